@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "app/furnish/furnish_view.h"
-#include "app/furnish/room_edits.h"
 #include "app/picture/furnish_words.h"
 
 namespace topple::app {

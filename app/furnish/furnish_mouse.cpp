@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "app/furnish/furnish_view.h"
-#include "app/furnish/room_edits.h"
 #include "app/picture/furnish_words.h"
 #include "render/scene/pick.h"
 #include "solver/io/scene/fixing_kinds.h"
@@ -153,6 +152,11 @@ std::optional<Vec2> FurnishView::wall_place_at(float x, float y) const {
   return at ? std::optional<Vec2>((*at / k_grid).array().round().matrix() * k_grid) : std::nullopt;
 }
 
+std::optional<DoorSpot> FurnishView::door_at(float x, float y) const {
+  const auto at = place_at(x, y);
+  return at ? door_near(room_.scene().setup.model, *at) : std::nullopt;
+}
+
 void FurnishView::move_ghost(float x, float y) {
   const bool fresh = ghost_->name.empty();
   const auto at = fresh ? place_at(x, y) : on_level(sight_at(x, y), grab_level_);
@@ -219,6 +223,19 @@ void FurnishView::click(float x, float y) {
                  })) {
         let_go();
       }
+      break;
+    }
+    case Tool::Kind::door: {
+      const auto door = door_at(x, y);
+      if (!door)
+        room_.refuse(say(furnish_words::k_no_wall));
+      else if (change([spot = *door](const io::Scene& scene) { return with_door(scene, spot); }))
+        let_go();
+      break;
+    }
+    case Tool::Kind::person: {
+      const auto place = wall_place_at(x, y);
+      if (place && change([at = *place](const io::Scene& scene) { return with_person(scene, at); })) let_go();
       break;
     }
     case Tool::Kind::fixing:

@@ -9,7 +9,6 @@
 
 #include "app/chart/theme.h"
 #include "app/furnish/furnish_view.h"
-#include "app/furnish/room_edits.h"
 #include "app/panels/shell_words.h"
 #include "app/picture/furnish_words.h"
 #include "render/scene/text_layout.h"
@@ -32,9 +31,9 @@ void fill_field(char* to, std::size_t size, const std::string& text) {
   to[length] = '\0';
 }
 
-void field_label(const Phrase& words) {
+void field_label(const std::string& words) {
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(say(words).c_str());
+  ImGui::TextUnformatted(words.c_str());
   ImGui::SameLine(k_label_share * ImGui::GetWindowContentRegionMax().x);
   ImGui::SetNextItemWidth(-2.2f * ImGui::GetFrameHeight());
 }
@@ -100,10 +99,11 @@ void FurnishView::draw_kinds(const render::OverlayFonts& fonts) {
   }
 }
 
-bool FurnishView::number_field(const Phrase& words, double value, const char* format, double& changed) const {
+bool FurnishView::number_field(const std::string& words, double value, const char* format,
+                               double& changed) const {
   field_label(words);
   double now = value;
-  ImGui::PushID(words.english.data());
+  ImGui::PushID(words.c_str());
   ImGui::InputDouble("##value", &now, 0, 0, format);
   ImGui::PopID();
   if (!ImGui::IsItemDeactivatedAfterEdit() || now == value || !std::isfinite(now)) return false;
@@ -122,7 +122,7 @@ void FurnishView::draw_piece() {
   const RoomPiece piece = *found;
   if (named_ != piece.name) fill_field(name_, sizeof name_, named_ = piece.name);
   if (!piece.kind.empty()) ImGui::TextDisabled("%s", fw::in_words(fw::k_kinds, piece.kind).c_str());
-  field_label(fw::k_name);
+  field_label(say(fw::k_name));
   ImGui::InputText("##name", name_, sizeof name_);
   if (ImGui::IsItemDeactivatedAfterEdit() && named_ != name_) {
     const std::string name = name_;
@@ -131,16 +131,15 @@ void FurnishView::draw_piece() {
     else
       fill_field(name_, sizeof name_, named_);
   }
-  const auto stand = [&](const Spot& spot) {
-    change([piece, spot](const io::Scene& scene) { return with_moved(scene, piece, spot); });
+  const auto stand = [&](const Spot& there) {
+    change([piece, there](const io::Scene& scene) { return with_moved(scene, piece, there); });
   };
+  const Spot spot = ghost_ && ghost_->name == piece.name ? ghost_->spot : piece.spot;
   double now = 0;
-  if (number_field(fw::k_x, piece.spot.at.x(), "%.3f", now))
-    stand({{now, piece.spot.at.y()}, piece.spot.yaw});
-  if (number_field(fw::k_y, piece.spot.at.y(), "%.3f", now))
-    stand({{piece.spot.at.x(), now}, piece.spot.yaw});
-  if (number_field(fw::k_turned, piece.spot.yaw * 180 / k_pi, "%.1f", now))
-    stand({piece.spot.at, std::remainder(now * k_pi / 180, 2 * k_pi)});
+  if (number_field(say(fw::k_x), spot.at.x(), "%.3f", now)) stand({{now, spot.at.y()}, spot.yaw});
+  if (number_field(say(fw::k_y), spot.at.y(), "%.3f", now)) stand({{spot.at.x(), now}, spot.yaw});
+  if (number_field(say(fw::k_turned), spot.yaw * 180 / k_pi, "%.1f", now))
+    stand({spot.at, std::remainder(now * k_pi / 180, 2 * k_pi)});
   ImGui::Separator();
   if (piece.table == "furniture") {
     draw_piece_numbers(piece);
@@ -164,7 +163,7 @@ void FurnishView::draw_piece_numbers(const RoomPiece& piece) {
   double now = 0;
   const std::pair<Phrase, int> sides[] = {{fw::k_depth, 0}, {fw::k_width, 1}, {fw::k_height, 2}};
   for (const auto& [words, axis] : sides) {
-    if (number_field(words, 1e3 * piece.size[axis], "%.0f", now)) {
+    if (number_field(say(words), 1e3 * piece.size[axis], "%.0f", now)) {
       Vec3 size = piece.size;
       size[axis] = now / 1e3;
       set("size",
@@ -173,17 +172,17 @@ void FurnishView::draw_piece_numbers(const RoomPiece& piece) {
     if (axis == 0) reset("size", entry.find("size"));
   }
   const auto kilograms = [](double kg) { return fmt::format("\"{:g} kg\"", kg); };
-  if (number_field(fw::k_mass, piece.mass, "%.4g", now)) set("mass", kilograms(now));
+  if (number_field(say(fw::k_mass), piece.mass, "%.4g", now)) set("mass", kilograms(now));
   reset("mass", entry.find("mass"));
-  if (number_field(fw::k_contents, piece.contents, "%.4g", now)) set("contents.mass", kilograms(now));
+  if (number_field(say(fw::k_contents), piece.contents, "%.4g", now)) set("contents.mass", kilograms(now));
   reset("contents.mass", contents && contents->find("mass"));
   const io::Node* const friction = entry.find("friction");
   const double present =
       friction && friction->is_number() ? friction->real : room_.scene().setup.parameters.contact.friction;
-  if (number_field(fw::k_feet_friction, present, "%.2f", now)) set("friction", fmt::format("{:g}", now));
+  if (number_field(say(fw::k_feet_friction), present, "%.2f", now)) set("friction", fmt::format("{:g}", now));
   reset("friction", friction);
   if (piece.becomes == "cabinet") {
-    field_label(fw::k_material);
+    field_label(say(fw::k_material));
     const io::Node* const material = entry.find("material");
     if (ImGui::BeginCombo("##material", material ? material->text.c_str() : say(fw::k_of_kind).c_str())) {
       for (const char* const one : k_materials)
@@ -202,6 +201,8 @@ void FurnishView::draw_room() {
   draw_walls();
   ImGui::Dummy({0, 6});
   draw_fixings();
+  ImGui::Dummy({0, 6});
+  draw_way_out();
 }
 
 void FurnishView::draw_walls() {
@@ -236,7 +237,7 @@ void FurnishView::draw_walls() {
     });
   ImGui::SameLine();
   double now = 0;
-  if (number_field(fw::k_ceiling, height, "%.2f", now))
+  if (number_field(say(fw::k_ceiling), height, "%.2f", now))
     change([now](const io::Scene& scene) { return with_ceiling(scene, now); });
 }
 
@@ -263,7 +264,45 @@ void FurnishView::draw_fixings() {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", words.c_str());
     if (small_x(std::to_string(k).c_str(), fw::k_remove_about)) removed = k + 1;
   }
-  if (removed > 0) change([removed](const io::Scene& scene) { return without_fixing(scene, removed); });
+  if (removed > 0)
+    change([removed](const io::Scene& scene) { return without_entry(scene, "fixing", removed); });
+}
+
+void FurnishView::draw_way_out() {
+  ImGui::TextUnformatted(say(fw::k_way_out).c_str());
+  ImGui::Separator();
+  ImGui::PushTextWrapPos(0);
+  ImGui::TextDisabled("%s", say(fw::k_way_out_about).c_str());
+  ImGui::PopTextWrapPos();
+  if (room_button(fw::k_add_door, fw::k_hint_door, true, tool_.kind == Tool::Kind::door)) arm_door();
+  if (room_button(fw::k_add_person, fw::k_hint_person, true, tool_.kind == Tool::Kind::person)) arm_person();
+  ImGui::NewLine();
+  const Room& room = room_.scene().setup.room;
+  std::string table;
+  std::size_t removed = 0;
+  const auto remover = [&](const char* of, std::size_t k) {
+    if (!small_x(fmt::format("{} {}", of, k).c_str(), fw::k_remove_about)) return;
+    table = of;
+    removed = k + 1;
+  };
+  double now = 0;
+  for (std::size_t k = 0; k < room.doors.size(); ++k) {
+    if (number_field(say(fw::k_door_width, room.doors[k].name), 1e3 * room.doors[k].width, "%.0f", now)) {
+      change([number = k + 1, width = now / 1e3](const io::Scene& scene) {
+        return with_door_width(scene, number, width);
+      });
+      return;
+    }
+    remover("door", k);
+  }
+  for (std::size_t k = 0; k < room.places.size(); ++k) {
+    const Room::Place& place = room.places[k];
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(say(fw::k_person_line, place.name, place.at.x(), place.at.y()).c_str());
+    remover("place", k);
+  }
+  if (removed > 0)
+    change([table, removed](const io::Scene& scene) { return without_entry(scene, table, removed); });
 }
 
 void FurnishView::draw_bar() {
@@ -292,6 +331,10 @@ std::string FurnishView::hint() const {
       return say(fw::k_hint_place, fw::in_words(fw::k_kinds, tool_.word));
     case Tool::Kind::wall:
       return say(tool_.from ? fw::k_hint_wall_to : fw::k_hint_wall_from);
+    case Tool::Kind::door:
+      return say(fw::k_hint_door);
+    case Tool::Kind::person:
+      return say(fw::k_hint_person);
     case Tool::Kind::fixing: {
       const std::string kind = fw::in_words(fw::k_fixing_kinds, tool_.word);
       return tool_.body.empty() ? say(fw::k_hint_fixing_from, kind)

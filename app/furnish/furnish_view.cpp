@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "app/chart/theme.h"
-#include "app/furnish/room_edits.h"
 #include "app/picture/bridge.h"
 #include "app/picture/furnish_words.h"
 #include "render/scene/text_layout.h"
@@ -21,6 +20,7 @@ constexpr render::Float4 k_red = {0.86f, 0.20f, 0.16f, 1}, k_marked = {0.05f, 0.
                          k_light = {0.35f, 0.72f, 1, 1};
 constexpr float k_room_to_furnish = 0.6f;  // m, around what stands there
 constexpr float k_least_side = 320, k_most_of_width = 0.45f;
+constexpr int k_person_corners = 24;  // of the outline where a person is to stand
 
 render::Float4 mixed(render::Float4 a, const render::Float4& b, float share) {
   if (a[3] == 0) a = k_rigid_colour;
@@ -62,6 +62,16 @@ void FurnishView::arm_kind(const std::string& kind) {
 void FurnishView::arm_wall() {
   let_go();
   tool_ = {Tool::Kind::wall, {}, {}, {}};
+}
+
+void FurnishView::arm_door() {
+  let_go();
+  tool_ = {Tool::Kind::door, {}, {}, {}};
+}
+
+void FurnishView::arm_person() {
+  let_go();
+  tool_ = {Tool::Kind::person, {}, {}, {}};
 }
 
 void FurnishView::arm_fixing(const std::string& kind) {
@@ -215,13 +225,45 @@ void FurnishView::draw_words_at_mouse(const std::string& words, unsigned colour,
   }
 }
 
+/// Of the wall, the door or the person that a click would put.
+void FurnishView::draw_outline_at_mouse(const render::OverlayFonts& fonts) const {
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  if (!scene_.contains(mouse.x, mouse.y)) return;
+  std::vector<Vec2> corners;
+  std::string words;
+  if (tool_.kind == Tool::Kind::wall && tool_.from) {
+    const auto to = wall_place_at(mouse.x, mouse.y);
+    if (!to) return;
+    corners = {*tool_.from, *to};
+    words = fmt::format("{:.2f} m", (*to - *tool_.from).norm());
+  } else if (tool_.kind == Tool::Kind::door) {
+    const auto door = door_at(mouse.x, mouse.y);
+    if (!door) return;
+    for (const double end : {-0.5, 0.5}) corners.push_back(door->middle + end * k_usual_door * door->along);
+    words = fmt::format("{}, {:.2f} m", door->wall, door->at);
+  } else if (tool_.kind == Tool::Kind::person) {
+    const auto at = wall_place_at(mouse.x, mouse.y);
+    if (!at) return;
+    const double radius = room_.scene().setup.room.person / 2;
+    for (int k = 0; k <= k_person_corners; ++k) {
+      const double turn = 2 * k_pi * k / k_person_corners;
+      corners.push_back(*at + radius * Vec2(std::cos(turn), std::sin(turn)));
+    }
+    words = fmt::format("{:.2f} m, {:.2f} m", at->x(), at->y());
+  }
+  std::vector<ImVec2> line;
+  for (const Vec2& corner : corners)
+    if (const auto pixel = pixel_of_floor(corner)) line.emplace_back(pixel->x(), pixel->y());
+  if (line.size() < 2) return;
+  list.AddPolyline(line.data(), static_cast<int>(line.size()), theme().line, 0, 3 * scale_);
+  draw_words_at_mouse(words, theme().text, fonts);
+}
+
 void FurnishView::draw_over_scene(const render::OverlayFonts& fonts) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   list.PushClipRect({scene_.left, scene_.top}, {scene_.left + scene_.width, scene_.top + scene_.height});
-  const ImVec2 mouse = ImGui::GetIO().MousePos;
-  if (tool_.kind == Tool::Kind::wall && tool_.from && scene_.contains(mouse.x, mouse.y))
-    if (const auto from = pixel_of_floor(*tool_.from))
-      list.AddLine({from->x(), from->y()}, mouse, theme().line, 3 * scale_);
+  draw_outline_at_mouse(fonts);
   const float margin = 14 * scale_;
   const std::string title = render::shortened(
       *fonts.text, room_.scene().title + " — " + say(furnish_words::k_furnishing), scene_.width - 2 * margin);
@@ -229,9 +271,6 @@ void FurnishView::draw_over_scene(const render::OverlayFonts& fonts) {
                title.c_str());
   list.PopClipRect();
   if (ghost_ && ghost_->red) draw_words_at_mouse(ghost_->why, theme().positive, fonts);
-  if (tool_.kind == Tool::Kind::wall && tool_.from)
-    if (const auto to = wall_place_at(mouse.x, mouse.y))
-      draw_words_at_mouse(fmt::format("{:.2f} m", (*to - *tool_.from).norm()), theme().text, fonts);
 }
 
 }  // namespace topple::app

@@ -10,6 +10,7 @@
 
 #include "app/furnish/furnishing.h"
 #include "app/furnish/palette.h"
+#include "app/furnish/room_edits.h"
 #include "app/furnish/snap.h"
 #include "app/panels/panels.h"
 #include "render/gl/key_press.h"
@@ -61,9 +62,11 @@ class FurnishView {
   void show(Tab tab) { tab_ = tab; }
   /// The pixel, from the upper left corner of the window, at which a place on the floor is seen.
   std::optional<Eigen::Vector2f> pixel_of_floor(const Vec2& at) const;
-  /// The next click puts a piece of this kind, a wall's end or a fixing's.
+  /// The next click puts a piece of this kind, a wall's end, a door, a person or a fixing's end.
   void arm_kind(const std::string& kind);
   void arm_wall();
+  void arm_door();
+  void arm_person();
   void arm_fixing(const std::string& kind);
   bool armed() const { return tool_.kind != Tool::Kind::select; }
   /// Where the piece that follows the mouse would stand; none: there is none.
@@ -81,7 +84,7 @@ class FurnishView {
  private:
   /// What a click in the room does.
   struct Tool {
-    enum class Kind { select, place, wall, fixing };
+    enum class Kind { select, place, wall, door, person, fixing };
     Kind kind = Kind::select;
     std::string word = {};          ///< of a kind of furniture or fixing
     std::optional<Vec2> from = {};  ///< m, the first end of a wall
@@ -106,6 +109,7 @@ class FurnishView {
   void draw_scene();
   void fit_view(render::NamedView view);
   void draw_over_scene(const render::OverlayFonts& fonts);
+  void draw_outline_at_mouse(const render::OverlayFonts& fonts) const;
   void draw_words_at_mouse(const std::string& words, unsigned colour,
                            const render::OverlayFonts& fonts) const;
 
@@ -124,6 +128,7 @@ class FurnishView {
   std::optional<Vec2> place_at(float x, float y) const;
   /// On the floor, on the grid.
   std::optional<Vec2> wall_place_at(float x, float y) const;
+  std::optional<DoorSpot> door_at(float x, float y) const;
 
   bool press_with_control(const render::KeyPress& press);
   void let_go();
@@ -135,11 +140,12 @@ class FurnishView {
   void draw_side(const render::OverlayFonts& fonts);
   void draw_kinds(const render::OverlayFonts& fonts);
   void draw_piece();
-  bool number_field(const Phrase& label, double value, const char* format, double& changed) const;
+  bool number_field(const std::string& label, double value, const char* format, double& changed) const;
   void draw_piece_numbers(const RoomPiece& piece);
   void draw_room();
   void draw_walls();
   void draw_fixings();
+  void draw_way_out();
   void draw_bar();
   void draw_status();
   void draw_keys();

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -110,6 +112,20 @@ class Changes {
   const Node root_;
   std::vector<KeyChange> all_;
 };
+
+/// `stem`, or the first of "stem-2", "stem-3" ... that no entry of these tables is called.
+std::string free_name(const Changes& changes, std::initializer_list<const char*> tables,
+                      const std::string& stem) {
+  std::set<std::string> taken;
+  for (const char* const table : tables)
+    for (std::size_t k = 1; k <= changes.entries(table); ++k) {
+      const Node* const written = changes.entry(table, k).find("name");
+      taken.insert(written ? written->text : fmt::format("{}-{}", table, k));
+    }
+  std::string name = stem;
+  for (int number = 2; taken.contains(name); ++number) name = fmt::format("{}-{}", stem, number);
+  return name;
+}
 
 bool says(const Node& entry, std::string_view key, const std::string& word) {
   const Node* const found = entry.find(key);
@@ -387,12 +403,7 @@ std::string with_ceiling(const io::Scene& scene, const std::optional<double>& he
 std::string with_fixing(const io::Scene& scene, const std::string& kind, const std::string& body,
                         const std::string& to) {
   Changes changes(scene);
-  std::set<std::string> taken;
-  for (const char* const table : {"fixing", "anchor"})
-    for (std::size_t k = 1; k <= changes.entries(table); ++k)
-      if (const Node* const written = changes.entry(table, k).find("name")) taken.insert(written->text);
-  std::string name = kind;
-  for (int number = 2; taken.contains(name); ++number) name = fmt::format("{}-{}", kind, number);
+  const std::string name = free_name(changes, {"fixing", "anchor"}, kind);
   changes.add_entry("fixing",
                     fmt::format("{{ name = {}, kind = {}, body = {}, to = {} }}", written_text(name),
                                 written_text(kind), written_text(body), written_text(to)));
@@ -401,9 +412,48 @@ std::string with_fixing(const io::Scene& scene, const std::string& kind, const s
   return changes.text();
 }
 
-std::string without_fixing(const io::Scene& scene, std::size_t number) {
+std::optional<DoorSpot> door_near(const Model& model, const Vec2& place) {
+  std::optional<DoorSpot> found;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Plane& plane : model.planes) {
+    const Vec2 level = plane.normal.head<2>();
+    if (level.norm() < 0.5) continue;
+    const Room::Wall wall{plane.name, plane.point.head<2>(), level.normalized()};
+    const double away = std::abs(Room::before(wall, place));
+    if (away >= nearest) continue;
+    nearest = away;
+    const double at = std::round(wall.along().dot(place - wall.at) / k_grid) * k_grid;
+    found = {wall.name, at, wall.at + at * wall.along(), wall.along()};
+  }
+  return found;
+}
+
+std::string with_door(const io::Scene& scene, const DoorSpot& spot) {
   Changes changes(scene);
-  changes.set({"fixing", std::to_string(number)}, std::nullopt);
+  changes.add_entry("door",
+                    fmt::format("{{ name = {}, wall = {}, at = {}, width = {} }}",
+                                written_text(free_name(changes, {"door"}, "door")), written_text(spot.wall),
+                                metres_text(spot.at), length_text(k_usual_door)));
+  return changes.text();
+}
+
+std::string with_door_width(const io::Scene& scene, std::size_t number, double width) {
+  Changes changes(scene);
+  changes.set("door", number, "width", length_text(width));
+  return changes.text();
+}
+
+std::string with_person(const io::Scene& scene, const Vec2& at) {
+  Changes changes(scene);
+  changes.add_entry(
+      "place", fmt::format("{{ name = {}, at = {} }}", written_text(free_name(changes, {"place"}, "person")),
+                           place_text(at, 0)));
+  return changes.text();
+}
+
+std::string without_entry(const io::Scene& scene, const std::string& table, std::size_t number) {
+  Changes changes(scene);
+  changes.set({table, std::to_string(number)}, std::nullopt);
   return changes.text();
 }
 

@@ -56,8 +56,25 @@ std::string with_ceiling(const io::Scene& scene, const std::optional<double>& he
 /// there is none is k_usual_ceiling high.
 std::string with_fixing(const io::Scene& scene, const std::string& kind, const std::string& body,
                         const std::string& to);
-/// Without fixing `number`, from 1.
-std::string without_fixing(const io::Scene& scene, std::size_t number);
+
+/// Where a door stands that is put near a place.
+struct DoorSpot {
+  std::string wall;
+  double at;           ///< m, as of Room::Door, in steps of k_grid
+  Vec2 middle, along;  ///< m, of the opening; unit, along the wall
+};
+inline constexpr double k_usual_door = 0.8;  // m, the opening
+/// In the nearest wall; nothing: there is none.
+std::optional<DoorSpot> door_near(const Model& model, const Vec2& place);
+/// A [[door]] there, k_usual_door wide.
+std::string with_door(const io::Scene& scene, const DoorSpot& spot);
+/// Door `number`, from 1, so wide, m.
+std::string with_door_width(const io::Scene& scene, std::size_t number, double width);
+/// A [[place]] where a person stands.
+std::string with_person(const io::Scene& scene, const Vec2& at);
+
+/// Without entry `number`, from 1, of `table`: a fixing, door or place.
+std::string without_entry(const io::Scene& scene, const std::string& table, std::size_t number);
 
 /// "380 mm": a length in m as scenes write it.
 std::string length_text(double metres);

@@ -1,10 +1,13 @@
 #include "app/live/live_worker.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <span>
 
 #include "app/batch/load_steps.h"
+#include "app/batch/run_warnings.h"
 #include "app/batch/summary.h"
 #include "app/picture/thinning.h"
 #include "app/support/clock.h"
@@ -144,6 +147,7 @@ void LiveWorker::step_once() {
   record(observer_.last(*run_));
   going_ = false;
   status_.kind = LiveStatus::Kind::over;
+  status_.message = fmt::format("{}", fmt::join(run_warnings(*run_), "; "));
 }
 
 // Steps until the next report is due, or the run is ahead of its pace.

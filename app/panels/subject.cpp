@@ -152,8 +152,14 @@ std::vector<std::string> about_member(const FrameContext& now, std::size_t index
   double length = 0;
   for (int e = member.first_element; e < member.first_element + member.element_count; ++e)
     length += now.model.elements[e].length;
-  return {say(window_words::k_member_line, now.model.sections[member.section].name,
-              now.model.materials[member.material].name, 1e3 * length)};
+  const Material& material = now.model.materials[member.material];
+  std::vector<std::string> lines{
+      say(window_words::k_member_line, now.model.sections[member.section].name, material.name, 1e3 * length)};
+  const double stress = beam_value<BeamQuantity::stress>(now, index) * traits(BeamQuantity::stress).per_unit;
+  if (material.yield > 0 && std::abs(stress) > material.yield && yield_ratio(now, index) < 1)
+    lines.push_back(
+        say(window_words::k_fibre_yields, material.yield / traits(BeamQuantity::stress).per_unit));
+  return lines;
 }
 
 std::vector<std::string> about_body(const FrameContext& now, std::size_t index) {

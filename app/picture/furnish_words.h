@@ -23,6 +23,8 @@ inline constexpr Phrase k_copies_share_name{"{0} is one of several copies, which
 inline constexpr Phrase k_wall_too_short{
     "a wall of {0:.0f} mm has no length: choose two places 100 mm apart or more",
     "長さ {0:.0f} mm の壁は作れません。100 mm 以上離れた2点を選んでください"};
+inline constexpr Phrase k_no_wall{"a door stands in a wall, and this room has none",
+                                  "扉を付ける壁がありません"};
 inline constexpr Phrase k_no_room_for_copy{"there is no room for a second one beside {0}",
                                            "{0} の隣に置く場所がありません"};
 inline constexpr Phrase k_not_to_there{"a {0} does not lead to {1}", "{0} は {1} には取り付けられません"};
@@ -60,6 +62,10 @@ inline constexpr Phrase k_hint_wall_from{"A wall: click one place that it goes t
                                          "壁：通る点をクリックしてください。"};
 inline constexpr Phrase k_hint_wall_to{"A wall: click a second place. Its face will look at the furniture.",
                                        "壁：もう1点をクリック。表面は家具の側を向きます。"};
+inline constexpr Phrase k_hint_door{"A door: click where it is in a wall.",
+                                    "扉：壁の位置をクリックしてください。"};
+inline constexpr Phrase k_hint_person{"A person: click where they stand when the shake begins.",
+                                      "人：揺れ始めに立つ場所をクリックしてください。"};
 inline constexpr Phrase k_hint_fixing_from{"{0}: click the piece that it holds.",
                                            "{0}：固定する家具をクリックしてください。"};
 inline constexpr Phrase k_hint_fixing_to{
@@ -74,7 +80,7 @@ inline constexpr Phrase k_ghost_before{"pale: the run before the room was change
 // the panel
 inline constexpr Phrase k_tab_kinds{"Furniture", "家具"};
 inline constexpr Phrase k_tab_piece{"Selected", "選択中"};
-inline constexpr Phrase k_tab_room{"Walls, fixings", "壁・固定具"};
+inline constexpr Phrase k_tab_room{"Room", "部屋"};
 inline constexpr Phrase k_own_kind{"a file of your own, \"my-shelf.toml\"",
                                    "自作のファイル（my-shelf.toml）"};
 inline constexpr Phrase k_nothing_selected{"Nothing is selected. Click a piece in the room.",
@@ -102,6 +108,13 @@ inline constexpr Phrase k_fixings{"Fixings", "固定具"};
 inline constexpr Phrase k_fixings_about{"Choose one, then click a piece and what it is held to.",
                                         "種類を選び、家具と取り付け先を順にクリックします。"};
 inline constexpr Phrase k_fixing_line{"{0}: {1} to {2}", "{0}：{1} → {2}"};
+inline constexpr Phrase k_way_out{"Doors, people", "扉・人"};
+inline constexpr Phrase k_way_out_about{"The run then tells who is hit and whose way out is blocked.",
+                                        "計算結果に、誰に当たるか、避難経路が塞がるかを表示します。"};
+inline constexpr Phrase k_add_door{"Door", "扉"};
+inline constexpr Phrase k_add_person{"Person", "人"};
+inline constexpr Phrase k_door_width{"{0}, mm wide", "{0}の幅 [mm]"};
+inline constexpr Phrase k_person_line{"{0}: x {1:.2f} m, y {2:.2f} m", "{0}：x {1:.2f} m、y {2:.2f} m"};
 inline constexpr Phrase k_fixings_went{"What was fixed to {0} is not fixed any more; Ctrl+Z brings it back.",
                                        "{0}に固定していた家具の固定も外れました。Ctrl+Z で元に戻ります。"};
 inline constexpr Phrase k_remove_about{"Takes it away", "取り除く"};

@@ -90,6 +90,7 @@ inline constexpr Phrase k_loads_done{"All load steps are done.", "全荷重ス�
 inline constexpr Phrase k_run_ended{"The run ended at {0:.2f} s.", "計算は {0:.2f} s で終了しました。"};
 inline constexpr Phrase k_after_end{" R, then Space runs it again, dragging on the timeline looks back.",
                                     " R の後 Space で再計算、タイムラインのドラッグで過去を表示します。"};
+inline constexpr Phrase k_warns{" Warning: {0}.", " 注意：{0}。"};
 inline constexpr Phrase k_no_instants{"The recording holds no instants.", "記録に時刻のデータがありません。"};
 inline constexpr Phrase k_running_loads{"Running through the load steps.", "荷重ステップを計算中。"};
 inline constexpr Phrase k_running{"Running: {0:.2f} times real time asked, {1:.2f} reached.",
@@ -311,6 +312,9 @@ inline constexpr Phrase k_iso{"Iso", "等角"};
 
 // legend
 inline constexpr Phrase k_stress{"von Mises stress", "相当応力（von Mises）"};
+inline constexpr Phrase k_fibre_yields{
+    "The outermost fibre is beyond {0:g} MPa; a hinge forms where the whole section yields: yield ratio 1.",
+    "最外縁が {0:g} MPa を超えています。断面全体が降伏すると（降伏比 1）ヒンジができます。"};
 inline constexpr Phrase k_yield_ratio{"yield ratio", "降伏比"};
 inline constexpr Phrase k_axial{"axial force, tension +", "軸力（引張+）"};
 inline constexpr Phrase k_moment{"bending moment", "曲げモーメント"};

@@ -41,7 +41,8 @@ std::string status_in_words(const Player& player) {
       break;
     case LiveStatus::Kind::over:
       if (player.at_head())
-        return (loads ? say(k_loads_done) : say(k_run_ended, player.time())) + say(k_after_end);
+        return (loads ? say(k_loads_done) : say(k_run_ended, player.time())) + say(k_after_end) +
+               (status.message.empty() ? "" : say(k_warns, status.message));
       break;
     default:
       break;
@@ -51,7 +52,8 @@ std::string status_in_words(const Player& player) {
     return !player.playing() ? say(k_paused) : loads ? say(k_running_loads) : running_in_words(player);
   std::string words = say(player.replay() ? k_recording : k_looking_back);
   if (player.playing()) words += loads ? say(k_played) : say(k_played_at, player.speed());
-  if (!status.message.empty()) return say(k_says, words, status.message);
+  if (!status.message.empty() && status.kind != LiveStatus::Kind::over)
+    return say(k_says, words, status.message);
   return say(player.replay() ? k_can_branch : k_can_branch_or_return, words);
 }
 

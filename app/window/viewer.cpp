@@ -214,11 +214,14 @@ void Viewer::report_frame_time(double ms) {
 
 void Viewer::build(const std::function<void()>& over, bool covered) {
   const Box before = scene_;
+  const float status_before = status_.height;
   write_status();
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) {
     camera_changed_ = true;
-    fitted_ = fitted_ && moved_;
+    const bool by_status_alone =
+        before.width == scene_.width && before.height + status_before == scene_.height + status_.height;
+    fitted_ = fitted_ && (moved_ || by_status_alone);
   }
   if (!covered) handle_characters();
   set_keyboard_navigation(!covered);

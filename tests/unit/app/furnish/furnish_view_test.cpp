@@ -149,6 +149,30 @@ TEST_F(FurnishTest, two_clicks_make_a_wall_and_two_a_fixing) {
   EXPECT_NE(room().refused().find("no length"), std::string::npos) << room().refused();
 }
 
+TEST_F(FurnishTest, a_door_stands_in_the_wall_that_is_clicked_and_a_person_on_the_floor) {
+  view().arm_person();
+  click_floor({-1.8, 0});  // behind the bookshelf
+  EXPECT_NE(room().refused().find("wall \"back\""), std::string::npos) << room().refused();
+  click_floor({0.5, -0.5});
+  EXPECT_FALSE(view().armed()) << room().refused();
+  view().arm_door();
+  click_at(pixel(Vec3(-2, -1, 0.8)), [this] { frame(); });
+  EXPECT_FALSE(view().armed()) << room().refused();
+  const Room& plan = room().scene().setup.room;
+  ASSERT_EQ(plan.places.size(), 1u);
+  ASSERT_EQ(plan.doors.size(), 1u);
+  EXPECT_LT((plan.places[0].at - Vec2(0.5, -0.5)).norm(), 0.02);
+  EXPECT_EQ(plan.walls[static_cast<std::size_t>(plan.doors[0].wall)].name, "back");
+  EXPECT_NEAR(((plan.jamb(plan.doors[0], 0) + plan.jamb(plan.doors[0], 1)) / 2).y(), -1, 0.02);
+  click("Room", "side");
+  frames(2);
+  click("x##place 0", "side");
+  frames(2);
+  EXPECT_TRUE(room().scene().setup.room.places.empty());
+  press('Z', true);
+  EXPECT_EQ(room().scene().setup.room.places.size(), 1u);
+}
+
 TEST_F(FurnishTest, a_room_is_shaken_and_the_run_before_it_stays_as_a_ghost) {
   press(' ');
   ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
@@ -222,7 +246,7 @@ TEST_F(FurnishTest, a_wall_that_goes_with_its_fixings_says_so) {
   frames(2);
   const std::size_t held = room().scene().setup.model.anchors.size();
   ASSERT_GT(held, 0u);
-  click("Walls, fixings", "side");
+  click("Room", "side");
   frames(2);
   click("x##back", "side");
   frames(2);

@@ -234,5 +234,38 @@ TEST(Furnishing, what_is_loaded_for_a_run_is_the_text_itself) {
   EXPECT_EQ(scene.setup.parameters.models, scene_of(k_room).setup.parameters.models);
 }
 
+TEST(RoomEdits, a_door_goes_into_the_nearest_wall_at_its_foot) {
+  const io::Scene scene =
+      scene_of(k_room + "[[wall]]\nname = \"side\"\nat = [0.5, 2]\nnormal = [0, -1, 0]\n");
+  const auto back = door_near(scene.setup.model, {-1.9, 1.203});
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->wall, "back");
+  EXPECT_NEAR(back->at, 1.2, 1e-12);  // in steps of 10 mm
+  EXPECT_LT((back->middle - Vec2(-2, 1.2)).norm(), 1e-12);
+  const auto side = door_near(scene.setup.model, {1.5, 1.9});
+  ASSERT_TRUE(side);
+  const std::string text = with_door(scene, *side);
+  expect_kept(k_room, text);
+  const Room room = scene_of(text).setup.room;
+  ASSERT_EQ(room.doors.size(), 1u);
+  EXPECT_LT(((room.jamb(room.doors[0], 0) + room.jamb(room.doors[0], 1)) / 2 - Vec2(1.5, 2)).norm(), 1e-9);
+  EXPECT_NEAR(room.doors[0].width, k_usual_door, 1e-12);
+  EXPECT_NEAR(scene_of(with_door_width(scene_of(text), 1, 0.9)).setup.room.doors[0].width, 0.9, 1e-12);
+  EXPECT_FALSE(door_near(scene_of("topple = 1\n[floor]\n[[furniture]]\nkind = \"chest\"\n").setup.model,
+                         Vec2::Zero()));
+}
+
+TEST(RoomEdits, people_have_names_of_their_own_and_can_be_taken_away) {
+  const std::string one = with_person(scene_of(k_room), {0.5, -0.25});
+  expect_kept(k_room, one);
+  const std::string two = with_person(scene_of(one), {1.5, 0.25});
+  const Room room = scene_of(two).setup.room;
+  ASSERT_EQ(room.places.size(), 2u);
+  EXPECT_EQ(room.places[0].name, "person");
+  EXPECT_EQ(room.places[1].name, "person-2");
+  EXPECT_LT((room.places[1].at - Vec2(1.5, 0.25)).norm(), 1e-12);
+  EXPECT_EQ(scene_of(without_entry(scene_of(two), "place", 1)).setup.room.places[0].name, "person-2");
+}
+
 }  // namespace
 }  // namespace topple::app

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "app/picture/annotations.h"
@@ -24,7 +26,7 @@ const Subject k_member{Subject::Kind::member, 0}, k_body{Subject::Kind::body, 0}
 
 /// A cantilever of 1 m under 10 N downwards and 20 N of pull at its tip.
 struct Cantilever {
-  Cantilever()
+  explicit Cantilever(const std::vector<std::string>& overrides = {})
       : scene(io::parse_scene(R"(topple = 1
 [run]
 analysis = "static"
@@ -37,7 +39,7 @@ members = [{ nodes = [0, 1], section = "post", material = "steel" }]
 supports = [{ node = 0, fix = "xyzXYZ" }]
 loads = [{ node = 1, force = ["20 N", 0, "-10 N"] }]
 )",
-                              "beam.toml")) {
+                              "beam.toml", overrides)) {
     topple::Run run(scene.setup);
     while (!run.over()) EXPECT_TRUE(run.advance().ok());
     row = io::frame_row(run);
@@ -59,6 +61,21 @@ TEST(Subject, section_forces_of_a_cantilever_are_those_of_theory) {
   EXPECT_NEAR(value(now, k_member, "stress"), stress / 1e6, 3e-3 * stress / 1e6);
   EXPECT_TRUE(std::isnan(value(now, k_member, "yield ratio")));  // it has no yield stress
   EXPECT_TRUE(std::isnan(value(now, k_body, "left to overturn")));
+}
+
+TEST(Subject, a_stress_beyond_yield_without_a_hinge_is_explained) {
+  const Cantilever elastic;
+  const FrameContext before{elastic.scene.setup.model, elastic.scene.setup.parameters.gravity, elastic.row};
+  const double stress = value(before, k_member, "stress");
+  EXPECT_EQ(about(before, k_member).size(), 1u);
+  const auto lines = [&](double yield) {
+    const Cantilever beam({fmt::format("material.1.yield=\"{} MPa\"", yield)});
+    return about({beam.scene.setup.model, beam.scene.setup.parameters.gravity, beam.row}, k_member);
+  };
+  EXPECT_EQ(lines(1.2 * stress).size(), 1u);
+  // a thin box bears more than a tenth more than at first yield
+  ASSERT_EQ(lines(stress / 1.05).size(), 2u);
+  EXPECT_TRUE(lines(stress / 1.05)[1].starts_with("The outermost fibre is beyond"));
 }
 
 TEST(Subject, a_diagram_stands_on_the_side_that_its_moment_stretches) {

@@ -219,6 +219,20 @@ TEST_F(ViewerTest, space_plays_and_pauses) {
   EXPECT_EQ(player_->time(), time);
 }
 
+TEST_F(ViewerTest, a_status_of_two_lines_leaves_the_camera_where_it_is) {
+  start();
+  for (int i = 0; i < 5; ++i) frame();
+  const float height = viewer_->scene_box().height;
+  const render::Orbit before = viewer_->orbit();
+  std::string words;
+  for (int i = 0; i < 60; ++i) words += "warning ";
+  viewer_->show_message(words);
+  for (int i = 0; i < 5; ++i) frame();
+  EXPECT_LT(viewer_->scene_box().height, height);
+  EXPECT_EQ(viewer_->orbit().distance, before.distance);
+  EXPECT_EQ(viewer_->orbit().target, before.target);
+}
+
 TEST_F(ViewerTest, buttons_do_what_keys_do) {
   start();
   type('[');  // time enough to find the button
