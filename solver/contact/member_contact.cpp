@@ -193,17 +193,19 @@ int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pair
   for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
     const MemberPair& pair = pairs[k];
     const PairVector x0 = gather(pair, start), x1 = gather(pair, end);
+    // no relative motion of two places is greater than one of the ends
+    double most = 0;
+    for (int a = 0; a < 2; ++a)
+      for (int b = 2; b < pair.nodes(); ++b)
+        most = std::max(most, (x1[a] - x0[a] - x1[b] + x0[b]).squaredNorm());
+    if (4 * most <= pair.L * pair.L) continue;
     const NearestShares before = nearest_shares(pair, x0), after = nearest_shares(pair, x1);
     for (int i = 0; i < before.count; ++i) {
-      // between members no relative motion of two ends is greater, on a panel that of the place is meant
-      double travel = 0;
-      if (pair.panel != nullptr) {
+      double travel = std::sqrt(most);
+      if (pair.panel != nullptr) {  // there the place is known
         Vec3 way = Vec3::Zero();
         for (int n = 0; n < 6; ++n) way += before.at[i].share[n] * (x1[n] - x0[n]);
         travel = way.norm();
-      } else {
-        for (int a = 0; a < 2; ++a)
-          for (int b = 2; b < 4; ++b) travel = std::max(travel, (x1[a] - x0[a] - x1[b] + x0[b]).norm());
       }
       if (travel > pair.L / 2 && std::min(before.at[i].gap, after.at[i].gap) < travel) return k;
     }
