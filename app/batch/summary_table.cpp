@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <vector>
 
 #include "app/batch/load_steps.h"
 #include "app/batch/summary.h"
 #include "app/batch/ways_summary.h"
+#include "app/support/model_words.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
 #include "solver/planar/planar_case.h"
@@ -60,25 +63,28 @@ std::string static_head(const ordered_json& s) {
   return out + "\n";
 }
 
-// Frames have the integrator; rigid and elastic bodies have central differences (reduced_body.h), planar ones
-// Taylor series.
+// What moved bodies on the levels that they were on.
 std::string integrators(const ordered_json& s) {
-  bool frames = false, others = false, blocks = false;
-  const auto look = [&](const ordered_json& model) {
-    const LevelTraits& level = level_called(model.get<std::string>());
-    (level.moves_nodes ? frames : level.has_block ? blocks : others) = true;
-  };
+  std::set<ModelLevel> levels;
   for (const auto& b : s["bodies"]) {
-    look(b["model"]);
-    for (const auto& change : b["models"]) look(change["model"]);
+    levels.insert(level_called(b["model"].get<std::string>()).kind);
+    for (const auto& change : b["models"])
+      levels.insert(level_called(change["model"].get<std::string>()).kind);
   }
-  const auto named = s["integrator"].get<std::string>();  // of frames, if there are any
-  std::string words = frames ? named : "";
-  const auto add = [&](const std::string& more) { words += (words.empty() ? "" : ", ") + more; };
-  if (frames && others && named != "central-difference") words += " (frames)";
-  if (others && !(frames && named == "central-difference")) add("central differences");
-  if (blocks) add("Taylor series (planar)");
-  return words.empty() ? "central differences" : words;
+  if (levels.contains(ModelLevel::rigid))
+    levels.erase(ModelLevel::elastic);  // which is moved by a part of that
+  std::vector<std::string> all;
+  for (const ModelLevel level :
+       {ModelLevel::frame, ModelLevel::elastic, ModelLevel::rigid, ModelLevel::planar}) {
+    if (!levels.contains(level)) continue;
+    const auto* const own = std::ranges::find(model_words::k_moved_by, level, &model_words::MovedBy::kind);
+    std::string words = own == std::end(model_words::k_moved_by) ? s["integrator"].get<std::string>()
+                                                                 : std::string(own->words.english);
+    if (levels.size() > 1 && own == std::end(model_words::k_moved_by)) words += " (frames)";
+    if (level == ModelLevel::planar) words += " (planar)";
+    all.push_back(std::move(words));
+  }
+  return fmt::format("{}", fmt::join(all, ", "));
 }
 
 constexpr int k_many_impacts = 10;  // each enlarges what differs before it
@@ -94,7 +100,8 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const std::string bounds = may_strike ? " until it strikes something, from which a frame springs back"
                              : impacts > k_many_impacts
                                  ? fmt::format(" before its {} impacts, which enlarge that", impacts)
-                                 : "";
+                             : impacts > 0 ? " until it lands"
+                                           : "";
   return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(), bounds);
 }
 

@@ -68,10 +68,12 @@ std::string info_table(const ordered_json& d) {
   std::string out = fmt::format("{} {}: {}\n", d["kind"].get<std::string>(), d["scene"].get<std::string>(),
                                 d["title"].get<std::string>());
   out += is_static(d) ? fmt::format("{} load steps", d["load_steps"].get<int>())
-                      : fmt::format("duration {:g} s, ", d["duration_s"].get<double>()) +
-                            (d["time_step_s"].is_null()
-                                 ? "adaptive step"
-                                 : fmt::format("time step {:g} s", d["time_step_s"].get<double>()));
+         : d["analysis"] == "modes"
+             ? "natural modes"
+             : fmt::format("duration {:g} s, ", d["duration_s"].get<double>()) +
+                   (d["time_step_s"].is_null()
+                        ? "adaptive step"
+                        : fmt::format("time step {:g} s", d["time_step_s"].get<double>()));
   out += fmt::format("; {} nodes, {} elements, {} contact points\n", d["nodes"].get<int>(),
                      d["elements"].get<int>(), d["contact_points"].get<int>());
   for (const auto& b : d["bodies"]) {
@@ -97,11 +99,13 @@ std::string info_table(const ordered_json& d) {
                        a["on"].get<bool>() ? "" : ", away at the start");
   if (d.contains("ways")) out += ways_in_words(d["ways"], d["person_m"].get<double>());
   if (d["kind"] != "recording") return out;
-  out += fmt::format("{}: {} frames to {}, {} checkpoints, last state {}\n", d["status"].get<std::string>(),
-                     d["frames"].get<long>(),
-                     is_static(d) ? fmt::format("load step {}", d["recorded_steps"].get<long>())
-                                  : fmt::format("{:g} s", d["recorded_s"].get<double>()),
-                     d["checkpoints"].get<long>(), d.value("last_state_hash", "-"));
+  const auto status = d["status"].get<std::string>();
+  out +=
+      fmt::format("{}: {} frames to {}, {} checkpoints, last state {}\n",
+                  status == "interrupted" ? "interrupted, or still written" : status, d["frames"].get<long>(),
+                  is_static(d) ? fmt::format("load step {}", d["recorded_steps"].get<long>())
+                               : fmt::format("{:g} s", d["recorded_s"].get<double>()),
+                  d["checkpoints"].get<long>(), d.value("last_state_hash", "-"));
   out +=
       fmt::format("format {}; arithmetic: {}\n", d["format"].get<int>(), d["arithmetic"].get<std::string>());
   if (!is_static(d) && d.contains("energy")) out += energy_in_words(d["energy"]);

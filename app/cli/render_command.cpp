@@ -146,7 +146,7 @@ class Drawing {
     render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
     if (solid_ && is_finite(row)) solid_->dress(row, frame);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
-    if (ghost_ && time <= ghost_->last()) bridge_.add_ghost(ghost_->at(time), settings, frame);
+    if (ghost_ && time <= ghost_->last()) bridge_.add_ghost(ghost_->at(time), row, settings, frame);
     return picture_.draw(frame, camera(frame, row), {.map = options_.picture.map});
   }
 

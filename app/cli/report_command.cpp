@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "app/batch/recorded_run.h"
 #include "app/cli/command.h"
 #include "app/page/export_page.h"
 #include "app/picture/replay.h"
 #include "app/picture/row.h"
+#include "app/picture/solid_bodies.h"
 #include "app/report/report.h"
 #include "app/support/errors.h"
 #include "app/support/files.h"
@@ -119,16 +121,21 @@ std::vector<KeyPicture::Label> labels_of(const io::FrameRow& row, const render::
   return labels;
 }
 
-/// Draws them without words, which the page has in its own language, and in one colour, as without a legend
-/// none says anything.
+/// Draws them without words, which the page has in its own language: furniture as it looks, beams in one
+/// colour, as without a legend none says anything.
 void draw(const io::Scene& scene, const Replay& replay, std::vector<KeyPicture>& pictures) {
   const RunExtent extent = extent_of(replay, scene);
   const Bridge bridge(scene, extent);
+  PictureSettings settings;
+  settings.bodies = usual_bodies(scene);
+  std::optional<SolidBodies> solid;
+  if (traits(settings.bodies).boards) solid.emplace(scene, settings.bodies);
   const std::unique_ptr<render::Context> context = render::make_off_screen_context(render::Renderer::any);
   render::Picture picture(context->get_proc(), k_width, k_height);
   for (KeyPicture& key : pictures) {
     const io::FrameRow row = replay.at(key.time);
-    render::SceneFrame frame = bridge.frame(row, replay.parameters(scene, row));
+    render::SceneFrame frame = bridge.frame(row, replay.parameters(scene, row), settings);
+    if (solid && is_finite(row)) solid->dress(row, frame);
     for (render::Tube& tube : frame.tubes)
       if (tube.colour[3] == 0) tube.colour = k_plain;
     const render::Camera camera =

@@ -71,7 +71,8 @@ void FurnishView::turn(int direction, bool fine) {
   if (ghost_) {
     ghost_->footprint.spot.yaw = std::remainder(ghost_->spot.yaw + by, 2 * k_pi);
     ghost_->spot.yaw = ghost_->footprint.spot.yaw;
-    ghost_->turned = frame_changed_ = true;
+    ghost_->turns = false;
+    frame_changed_ = true;
     room_.ask(edit_of_ghost());
     return;
   }

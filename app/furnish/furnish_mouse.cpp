@@ -87,7 +87,9 @@ void FurnishView::handle_mouse() {
                    .footprint = {piece.spot, piece.half},
                    .floor = piece.floor,
                    .name = piece.name,
-                   .spot = piece.spot};
+                   .spot = piece.spot,
+                   .turns = piece.table != "frame" &&
+                            backs_wall({piece.spot, piece.half}, wall_lines(room_.scene().setup.model))};
     select(pressed_);
     frame_changed_ = true;
   }
@@ -163,7 +165,7 @@ void FurnishView::move_ghost(float x, float y) {
   if (!at) return;
   ghost_->footprint.spot = {fresh ? *at : Vec2(*at - grab_), ghost_->footprint.spot.yaw};
   const std::vector<WallLine> walls = wall_lines(room_.scene().setup.model);
-  const Spot spot = snapped(ghost_->footprint, footprints_but(ghost_->name), walls, fresh && !ghost_->turned);
+  const Spot spot = snapped(ghost_->footprint, footprints_but(ghost_->name), walls, ghost_->turns);
   if (spot == ghost_->spot && ghost_->seen) return;
   ghost_->spot = spot;
   ghost_->seen = true;

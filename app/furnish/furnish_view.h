@@ -98,7 +98,7 @@ class FurnishView {
     std::string name = {};  ///< of the piece that is moved; empty: a new one
     Spot spot = {};         ///< where it would stand
     bool seen = false;      ///< the mouse has been over the room
-    bool turned = false;    ///< by hand
+    bool turns = true;      ///< its back to a wall that is near
     bool red = false;
     std::string why = {};  ///< it is red
   };

@@ -54,6 +54,13 @@ double half_along(const Footprint& of, const Vec2& direction) {
   return of.half.x() * std::abs(front.dot(direction)) + of.half.y() * std::abs(left.dot(direction));
 }
 
+bool backs_wall(const Footprint& piece, std::span<const WallLine> walls) {
+  return std::ranges::any_of(walls, [&](const WallLine& wall) {
+    const double gap = wall.normal.dot(piece.spot.at - wall.at) - piece.half.x();
+    return gap < k_snap_reach && wall.normal.dot(front_of(piece.spot.yaw)) > 1 - k_parallel;
+  });
+}
+
 std::vector<WallLine> wall_lines(const Model& model) {
   std::vector<WallLine> walls;
   for (const Plane& plane : model.planes)

@@ -29,6 +29,9 @@ struct WallLine {
 /// Of the upright planes of a model.
 std::vector<WallLine> wall_lines(const Model& model);
 
+/// Its back is at a wall.
+bool backs_wall(const Footprint& piece, std::span<const WallLine> walls);
+
 /// Moves a piece out of walls, else at most k_snap_reach in each direction: to k_gap_at_wall from a wall, to
 /// k_gap_at_piece from another piece with backs, fronts or middles in line, else to the grid. `turns`: one
 /// whose back can come to a wall that near turns its back to it.

@@ -53,6 +53,7 @@ struct LiveReport {
   std::vector<io::RecordedEvent> events;
   std::vector<StepStability> stabilities;  ///< of static runs
   RowPtr head;                             ///< the newest state of a live run; null: as before
+  std::vector<double> anchor_peaks;        ///< N, greatest force so far of the live branch; empty: as before
   LiveStatus status;
 };
 

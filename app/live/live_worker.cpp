@@ -200,7 +200,12 @@ void LiveWorker::report_head() {
     else if (row.anchor[k].state == io::k_anchor_away)
       row.anchor[k].state = io::k_anchor_slack;  // as the next step begins with it
   auto head = std::make_shared<const io::FrameRow>(std::move(row));
-  publish([&head](LiveReport& report) { report.head = std::move(head); });
+  std::vector<double> peaks;
+  for (const AnchorOutcome& anchor : run_->outcome().anchors()) peaks.push_back(anchor.peak_force);
+  publish([&](LiveReport& report) {
+    report.head = std::move(head);
+    report.anchor_peaks = std::move(peaks);
+  });
   set(status_.kind);
 }
 

@@ -107,6 +107,7 @@ void Player::take(LiveReport&& report) {
   for (const StepStability& told : report.stabilities)
     stabilities_[{told.branch, told.step}] = told.stability;
   if (report.head) head_ = std::move(report.head);
+  if (!report.anchor_peaks.empty()) anchor_peaks_ = std::move(report.anchor_peaks);
   for (RowPtr& row : report.rows) {
     if (row->branch == shown_ && !rebuild) extend_way(row);
     keep(std::move(row));
@@ -152,6 +153,7 @@ void Player::rebuild_way() {
   for (const RowPtr& row : rows_on_way_to(shown_)) extend_way(row);
   const bool other = left_ >= 0 && left_ != shown_;
   ghost_way_ = other ? rows_on_way_to(left_) : std::vector<RowPtr>();
+  if (ghost_way_.size() < 2) ghost_way_.clear();  // it was left before it began
 }
 
 void Player::extend_way(const RowPtr& row) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -105,6 +106,11 @@ class Player {
   /// Recorded on the same branches.
   std::vector<io::RecordedEvent> events() const;
   std::vector<LoggedEdit> edits() const;
+  /// Greatest force of each anchor between the frames too, from the start of the branch that goes on to its
+  /// newest state, N; empty: another branch is shown, or a recording.
+  std::span<const double> anchor_peaks() const {
+    return live_shown() ? std::span<const double>(anchor_peaks_) : std::span<const double>();
+  }
   /// Of the load step that ends at a recorded frame; null: it is not known.
   const Stability* stability(const io::FrameRow& row) const;
 
@@ -136,6 +142,7 @@ class Player {
   std::vector<io::RecordedEvent> events_;
   std::map<std::pair<std::int32_t, std::int64_t>, Stability> stabilities_;  // by branch and step
   RowPtr head_;
+  std::vector<double> anchor_peaks_;
   std::int32_t shown_ = 0;
   std::int32_t left_ = -1;  // branch that was left last; -1: none
   std::vector<RowPtr> way_, ghost_way_;

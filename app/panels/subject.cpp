@@ -176,9 +176,20 @@ std::vector<std::string> about_body(const FrameContext& now, std::size_t index) 
 
 std::vector<std::string> about_anchor(const FrameContext& now, std::size_t index) {
   const Anchor& anchor = now.model.anchors[index];
-  return {say(window_words::k_anchor_line, anchor_type_in_words(anchor), now.model.bodies[anchor.body].name,
-              anchor.stiffness / 1e3, 1e3 * now.row.anchor[index].natural_length),
-          anchor_in_words(now.model, now.row, index)};
+  std::vector<std::string> lines{
+      say(window_words::k_anchor_line, anchor_type_in_words(anchor), now.model.bodies[anchor.body].name,
+          anchor.stiffness / 1e3, 1e3 * now.row.anchor[index].natural_length),
+      anchor_in_words(now.model, now.row, index)};
+  const bool breaks = std::isfinite(anchor.strength);
+  std::string words = breaks ? say(window_words::k_anchor_strength, value_text(anchor.strength)) : "";
+  if (index < now.anchor_peaks.size()) {
+    const double peak = std::min(now.anchor_peaks[index], anchor.strength);
+    words += (words.empty() ? "" : say(window_words::k_comma)) +
+             say(window_words::k_anchor_peak, value_text(peak)) +
+             (breaks ? say(window_words::k_of_strength, percent_of(peak, anchor.strength)) : "");
+  }
+  if (!words.empty()) lines.push_back(words);
+  return lines;
 }
 
 constexpr SubjectTraits k_subjects[] = {
@@ -269,6 +280,7 @@ FrameContext frame_context(const Player& player, const io::FrameRow& row) {
   if (at != way.begin()) now.before = (at - 1)->get();
   const auto next = at != way.end() && (*at)->time == row.time ? at + 1 : at;
   if (next != way.end()) now.after = next->get();
+  now.anchor_peaks = player.anchor_peaks();
   return now;
 }
 

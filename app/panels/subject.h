@@ -37,6 +37,7 @@ struct FrameContext {
   const io::FrameRow& row;
   const io::FrameRow* before = nullptr;
   const io::FrameRow* after = nullptr;
+  std::span<const double> anchor_peaks = {};  ///< N, Player::anchor_peaks()
 };
 /// `row` between its neighbours among the recorded frames.
 FrameContext frame_context(const Player& player, const io::FrameRow& row);

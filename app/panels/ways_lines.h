@@ -3,6 +3,7 @@
 
 #include "app/live/player.h"
 #include "app/picture/ways_in_words.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 
@@ -22,6 +23,7 @@ class WaysLines {
 
   WaysInWords words_;
   std::int32_t branch_ = -1;
+  Language language_ = Language::english;
   double time_ = -1;  // s, of the words
 };
 

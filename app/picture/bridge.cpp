@@ -179,10 +179,11 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   return out;
 }
 
-void Bridge::add_ghost(const io::FrameRow& row, const PictureSettings& settings,
+void Bridge::add_ghost(const io::FrameRow& row, const io::FrameRow& beside, const PictureSettings& settings,
                        render::SceneFrame& out) const {
   if (!is_finite(row)) return;
   io::FrameRow drawn = row;
+  std::ranges::copy(beside.floor_displacement, drawn.floor_displacement);
   exaggerate(scene_.setup.model, rigid_fit(scene_.setup.model, row), settings.exaggeration, drawn);
   add_tubes(
       drawn, [](std::size_t, double) { return 0.f; }, out.ghost_stations, out.ghost_tubes);

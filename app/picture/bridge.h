@@ -31,8 +31,9 @@ class Bridge {
   /// so.
   render::SceneFrame frame(const io::FrameRow& row, const Parameters& parameters,
                            const PictureSettings& settings = {}) const;
-  /// The bodies of another row as a ghost in `out`.
-  void add_ghost(const io::FrameRow& row, const PictureSettings& settings, render::SceneFrame& out) const;
+  /// The bodies of another row as a ghost in `out`, on the floor of the row beside it.
+  void add_ghost(const io::FrameRow& row, const io::FrameRow& beside, const PictureSettings& settings,
+                 render::SceneFrame& out) const;
   /// Of its tubes.
   const std::vector<render::Profile>& profiles() const { return profiles_; }
   /// Where the colours of a row end, in the quantity's unit.

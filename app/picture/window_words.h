@@ -37,6 +37,7 @@ inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°
 inline constexpr Phrase k_leaning{"leans {0:.1f}° of {1:.1f}°", "傾斜 {0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};
 inline constexpr Phrase k_slid{", slid {0:.0f} mm", "、すべり {0:.0f} mm"};
+inline constexpr Phrase k_slid_farthest{", {0} slid {1:.0f} mm", "、{0}が最大 {1:.0f} mm すべった"};
 inline constexpr Phrase k_all_stand{"all {0} stand", "{0}体すべて直立"};
 inline constexpr Phrase k_other_stands{"1 other stands", "ほか1体は直立"};
 inline constexpr Phrase k_others_stand{"{0} others stand", "ほか{0}体は直立"};
@@ -107,6 +108,9 @@ inline constexpr Phrase k_looking_back{"Looking back", "過去を表示中"};
 inline constexpr Phrase k_played{", played", "（再生中）"};
 inline constexpr Phrase k_played_at{", played at {0:g} times real time", "（{0:g} 倍速で再生中）"};
 inline constexpr Phrase k_says{"{0}; {1}", "{0}：{1}"};
+inline constexpr Phrase k_at_newest{
+    "This is the newest instant: drag on the timeline, then C continues from there.",
+    "最新の時刻です。タイムラインで戻ってから C で分岐します。"};
 inline constexpr Phrase k_can_branch{"{0}. C continues from here as a new branch.",
                                      "{0}。C でここから新しい分岐を開始します。"};
 inline constexpr Phrase k_can_branch_or_return{
@@ -372,9 +376,8 @@ inline constexpr Phrase k_integrated{"integrated", "積分点"};
 inline constexpr Phrase k_stresses_at{"stresses (hinge: filled)", "応力評価点（ヒンジ：塗り）"};
 inline constexpr Phrase k_s_of_elements{"s of its elements: {0}", "各要素の s：{0}"};
 inline constexpr Phrase k_over_run_about{
-    "At the recorded instants.\nA blow between two of them may be harder:\nthe summary of topple run has its "
-    "peak.",
-    "記録された時刻での値。\nその間の衝撃はこれより大きいことがあり、\ntopple run の要約に最大値が示される"};
+    "At the recorded instants.\nA blow between two of them may be harder.",
+    "記録された時刻での値。\nその間の衝撃はこれより大きいことがある。"};
 inline constexpr Phrase k_over_run{"{0}, peak {1} {2}", "{0}、最大 {1} {2}"};
 inline constexpr Phrase k_pin{"Pin", "固定表示"};
 inline constexpr Phrase k_unpin{"Unpin", "固定解除"};
@@ -386,6 +389,8 @@ inline constexpr Phrase k_block_line{"{0:.4g} kg, a solid block, {1}",
                                      "{0:.4g} kg、剛なブロック、モデル {1}"};
 inline constexpr Phrase k_touched_by{"by {0}: {1} N, upward {2} N, at {3:.2f} m",
                                      "{0} から {1} N（上向き {2} N）、高さ {3:.2f} m"};
+inline constexpr Phrase k_anchor_strength{"strength {0} N", "耐力 {0} N"};
+inline constexpr Phrase k_anchor_peak{"greatest force {0} N", "最大 {0} N"};
 inline constexpr Phrase k_anchor_line{"{0} of {1}, {2:.4g} kN/m, {3:.0f} mm long",
                                       "{1} の{0}、{2:.4g} kN/m、長さ {3:.0f} mm"};
 inline constexpr Phrase k_approximate{"A contact presses on its middle node: its own bending is approximate.",

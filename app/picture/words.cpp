@@ -144,9 +144,14 @@ std::vector<std::string> bodies_in_words(const Model& model, const Vec3& gravity
   }
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, gravity, row, bodies[i]));
-  if (told == 0 && !bodies.empty())
-    lines.push_back(say(k_all_stand, bodies.size()));
-  else if (told < bodies.size())
+  if (told == 0 && !bodies.empty()) {
+    const std::size_t farthest =
+        *ranges::max_element(bodies, {}, [&](std::size_t body) { return row.body[body].slide; });
+    const double slide = row.body[farthest].slide;
+    lines.push_back(
+        say(k_all_stand, bodies.size()) +
+        (slide > k_slid_least ? say(k_slid_farthest, model.bodies[farthest].name, 1e3 * slide) : ""));
+  } else if (told < bodies.size())
     lines.push_back(others_in_words(model, gravity, row, std::span(bodies).subspan(told)));
   return lines;
 }

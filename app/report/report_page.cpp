@@ -113,7 +113,7 @@ std::string harms(const ReportPage& page) {
     for (const ordered_json& body : way.value("blocked_by", ordered_json::array()))
       blocked += (blocked.empty() ? "" : ", ") + body.get<std::string>();
     if (way["open"] == false && way["before"]["open"] == true)
-      out += page.say(words::k_is_shut_in, place, blocked) + " ";
+      out += page.say(way["caught"] == true ? words::k_is_caught : words::k_is_shut_in, place, blocked) + " ";
   }
   return out;
 }

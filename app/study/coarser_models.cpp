@@ -27,9 +27,9 @@ std::string coarser_in_words(const io::Scene& scene, const std::vector<std::stri
   for (const auto& [levels, names] : coarser) {
     const std::size_t told = std::min(names.size(), few);
     text += fmt::format(
-        "{}{}: {} here, at run.accuracy = {:g}; a run of the scene has {}, which may lift earlier and "
-        "overturn "
-        "where this does not: so it is here with --set run.accuracy={:g}, at many times the cost\n",
+        "{}{}: {} here, at run.accuracy = {:g}; a run of the scene has {}, which may lift earlier, slide "
+        "where this rocks, and overturn where this does not: so it is here with --set run.accuracy={:g}, at "
+        "many times the cost\n",
         fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(told), ", "),
         told < names.size() ? fmt::format(" and {} more", names.size() - told) : "",
         traits(levels.first).word, study.parameters.accuracy, traits(levels.second).word, finer.accuracy);

@@ -131,7 +131,8 @@ bool Shell::finish_opening() {
   try {
     LiveSource source = done.take();
     std::optional<EarlierRun> before;
-    if (shaking_ && session_ && session_->scene().text != room_->room().text())
+    if (shaking_ && session_ && session_->scene().text != room_->room().text() &&
+        session_->player().way().size() > 1)
       before = EarlierRun(session_->scene_ptr(), session_->player().way());
     show(std::move(source), opening_path_);
     if (shaking_) {
@@ -192,7 +193,8 @@ void Shell::start_demo() {
     session_->viewer().guide(demo_->which, before_demo_);
     demo_.reset();
   } else if (!std::exchange(demo_->opened, true)) {
-    before_demo_ = session_->source();
+    // a furnished room is in no file that opens it anew, but its run was recorded
+    before_demo_ = shaken_ == &session_->scene() ? session_->recording() : session_->source();
     open(k_demo_scene);
   } else if (!there) {
     demo_.reset();  // something else was opened meanwhile

@@ -53,13 +53,15 @@ EarlierRun::EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPt
       extent_(std::make_unique<const RunExtent>()),
       bridge_(std::make_unique<const Bridge>(*scene_, *extent_)) {}
 
-void EarlierRun::add(double time, const PictureSettings& settings, render::SceneFrame& out) const {
+void EarlierRun::add(const io::FrameRow& beside, const PictureSettings& settings,
+                     render::SceneFrame& out) const {
+  const double time = beside.time;
   if (way_.empty() || time > way_.back()->time) return;
   const auto later = std::ranges::lower_bound(way_, time, {}, [](const RowPtr& row) { return row->time; });
   const io::FrameRow& after = **later;
   const io::FrameRow row = later == way_.begin() ? after : blend(**(later - 1), after, time);
   render::SceneFrame ghost;
-  bridge_->add_ghost(row, settings, ghost);
+  bridge_->add_ghost(row, beside, settings, ghost);
   const auto profiles = static_cast<std::uint32_t>(out.profiles.size());
   out.profiles.insert(out.profiles.end(), bridge_->profiles().begin(), bridge_->profiles().end());
   out.ghost_stations = std::move(ghost.ghost_stations);
@@ -234,7 +236,9 @@ void Viewer::build(const std::function<void()>& over, bool covered) {
   std::optional<io::FrameRow> row = player_.row();
   const LiveStatus& status = player_.status();
   const int failed = status.kind == LiveStatus::Kind::failed ? status.element : -1;
-  if (!same_instant(row, row_) || failed != failed_element_) scene_changed_ = true;
+  const std::optional<std::int32_t> pale = player_.ghost_branch();
+  if (!same_instant(row, row_) || failed != failed_element_ || pale != pale_branch_) scene_changed_ = true;
+  pale_branch_ = pale;
   failed_element_ = failed;
   row_ = std::move(row);
   handle_mouse();
@@ -294,9 +298,9 @@ void Viewer::draw_scene() {
       frame_.highlighted_member =
           player_.scene().setup.model.elements[static_cast<std::size_t>(failed_element_)].member;
     if (shows_earlier())
-      earlier_->add(row_->time, settings_, frame_);
+      earlier_->add(*row_, settings_, frame_);
     else if (const auto ghost = ghost_shown_ ? player_.ghost() : std::nullopt)
-      bridge_.add_ghost(*ghost, settings_, frame_);
+      bridge_.add_ghost(*ghost, *row_, settings_, frame_);
   }
   if (follows_ && scene_changed_) move_with_followed();
   if (keeps_in_picture_ && scene_changed_ && fitted_) keep_in_picture();

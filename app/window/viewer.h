@@ -30,8 +30,8 @@ class EarlierRun {
  public:
   /// `way`: its rows, in the order of time.
   EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPtr> way);
-  /// Its bodies at `time`, as ghosts; as long as it lasted.
-  void add(double time, const PictureSettings& settings, render::SceneFrame& out) const;
+  /// Its bodies at the time of `beside`, as ghosts on the floor of that; as long as it lasted.
+  void add(const io::FrameRow& beside, const PictureSettings& settings, render::SceneFrame& out) const;
   /// Of the pieces that `model` has by the same names.
   GhostCurves curves(const Model& model) const;
 
@@ -203,7 +203,8 @@ class Viewer {
   Hand hand_;
   std::optional<SolidBodies> solid_;  ///< once they were wanted
   Tab tab_ = Tab::parameters;
-  int failed_element_ = -1;  // marked; -1: none
+  int failed_element_ = -1;                  // marked; -1: none
+  std::optional<std::int32_t> pale_branch_;  // that was left
   bool scene_changed_ = true, camera_changed_ = true;
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed

@@ -185,7 +185,8 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
 std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame,
                                      ColourMap map, float width, float height, LeftOut& left_out) {
   const float unit = fonts.text->FontSize / 17;
-  const Layout at{list, fonts, width, height, unit, std::round(26 * unit), colours(frame.dark)};
+  const Colours& on = colours(frame.dark);
+  const Layout at{list, fonts, width, height, unit, std::round(26 * unit), on, on.sheet | IM_COL32_A_MASK};
   std::vector<OverlayBox> boxes;
   const bool has_legend = can_be_drawn(frame.legend, left_out);
   const float column_left = has_legend ? std::round(0.825f * width) : width - at.margin;

@@ -10,9 +10,9 @@ namespace topple {
 
 inline constexpr double k_balance = 1e-10;  ///< greatest unbalanced force at rest over the weight
 
-/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section breaks; there
-/// is none near the start, as the body leaves it; none was found.
-enum class Balance { rest, tips_over, breaks, leaves, none };
+/// What a balance of forces is: stable; unstable: the body tips over; not yet final: a section breaks, or
+/// what was held slips; there is none near the start, as the body leaves it; none was found.
+enum class Balance { rest, tips_over, not_final, leaves, none };
 
 /// Of a balance that is none of rest.
 inline NoRest no_rest(Balance balance) {
@@ -34,11 +34,11 @@ struct RestStep {
 ///   double size            m
 ///   double balanced        N, greatest unbalanced force that counts as balance
 ///   double unbalance()     N, the unbalanced force; finds forces and tangent
-///   Balance look()         judges a balance: rest, tips_over or breaks
+///   Balance look()         judges a balance: rest, tips_over or not_final
 ///   optional<RestStep> step(sigma)    solves for a step; null: singular or not finite
 ///   void follow()          takes the step, stick springs included
 template <class Body>
-Balance find_rest(Body& body, double most = 0.01) {
+Balance find_rest(Body& body, double most) {
   constexpr int k_most_rounds = 400, k_usual_rounds = 100;
   constexpr double k_first_sigma = 1e-3, k_last_sigma = 1e3;  // s
   constexpr double k_furthest = 0.25;                         // of the size: more is falling, not settling
@@ -49,7 +49,7 @@ Balance find_rest(Body& body, double most = 0.01) {
     if (round == k_usual_rounds) sigma = k_first_sigma;
     if (left < body.balanced && sigma > 1) {
       const Balance balance = body.look();
-      if (balance != Balance::breaks) return balance;
+      if (balance != Balance::not_final) return balance;
       sigma = k_first_sigma;
       continue;
     }

@@ -13,6 +13,10 @@
 namespace topple {
 namespace {
 
+// Steps, of the size. Slender members that turn far in one step stretch, and throw the body off, as a wall
+// does with what goes deep into it; a body on soft contacts may sink farther than short steps lead.
+constexpr double k_short = 0.002, k_long = 0.01;
+
 // Force that rounding of the coordinates makes in the stiffest element, N.
 double rounding(const BodySystem& s, const std::vector<Vec3>& position) {
   double stiffness = 0, reach = s.size;
@@ -114,7 +118,7 @@ class FrameRest {
   }
 
   Balance look() {
-    if (!s_.loads_grow && break_sections(s_, w_.start)) return Balance::breaks;
+    if (!s_.loads_grow && break_sections(s_, w_.start)) return Balance::not_final;
     return tips_over(s_, still_, now_, state_, w_) ? Balance::tips_over : Balance::rest;
   }
 
@@ -193,13 +197,12 @@ class FrameRest {
 StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
   const std::vector<Vec3> stick = state.stick;
   FrameRest body(s, parameters, state, w);
-  const Balance found = find_rest(body);
+  const Balance found = find_rest(body, k_short);
   if (found == Balance::rest) return body.accept();
   if (found == Balance::tips_over) return body.status(found);
-  // slender members that turn far in one step stretch, and throw the body off
   state.stick = stick;
   FrameRest again(s, parameters, state, w);
-  const Balance then = find_rest(again, 0.002);
+  const Balance then = find_rest(again, k_long);
   return then == Balance::rest ? again.accept() : again.status(then == Balance::none ? found : then);
 }
 

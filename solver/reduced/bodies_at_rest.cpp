@@ -13,6 +13,9 @@
 namespace topple {
 namespace {
 
+constexpr double k_beyond_touch = 1e-6;  // of the size
+constexpr double k_most = 1e-3;          // of the size, a step
+
 Parameters without_ramp(Parameters parameters) {
   parameters.contact_ramp = {};
   return parameters;
@@ -30,7 +33,8 @@ class RestOfBodies {
         balanced(0),
         bodies_(bodies),
         coupling_(coupling),
-        still_(without_ramp(at_rest(parameters))),
+        limited_(without_ramp(at_rest(parameters))),
+        still_(without_ramp(at_rest_without_slip(parameters))),
         now_(still_, 0),
         state_(state),
         buffers_(bodies.size()),
@@ -102,6 +106,12 @@ class RestOfBodies {
 
   // A balance that tips over by itself: Newton finds it as readily as a stable one.
   Balance look() {
+    if (slips_not_) {
+      slips_not_ = false;
+      still_ = limited_;
+      now_ = StepInputs(still_, 0);
+      if (!(unbalance() < balanced)) return Balance::not_final;
+    }
     matrix_.set_zero();
     for (const Part& part : parts_) {
       matrix_.add(part.row, part.column, Mat6(part.stiffness / 2));
@@ -118,17 +128,22 @@ class RestOfBodies {
     if (matrix_.factor() >= 0) return std::nullopt;
     matrix_.solve(load_.data());
     RestStep out{0, 0};
+    const auto length_of = [&](std::size_t b) {
+      const double* const x = &load_[6 * row_[b]];
+      return Vec3(x).norm() + bodies_[b].body->reach_ * Vec3(x + 3).norm();
+    };
+    for (std::size_t b = 0; b < bodies_.size(); ++b) out.length = std::max(out.length, length_of(b));
+    if (!std::isfinite(out.length)) return std::nullopt;
+    const double part = part_to_touch(k_beyond_touch * size / out.length);
+    out.length *= part;
     for (std::size_t b = 0; b < bodies_.size(); ++b) {
       const double* const x = &load_[6 * row_[b]];
-      const Vec3 shift(x), turn(x + 3);
       BodyState& s = at(b);
       before_[b] = s;
-      s.position += shift;
-      s.rotation = (exp_quaternion(turn) * s.rotation).normalized();
-      for (int k = 0; k < modes(b); ++k) s.amplitude[k] += x[6 + k];
-      const double length = shift.norm() + bodies_[b].body->reach_ * turn.norm(),
-                   travel = (s.position - origin_[b]).norm() + length;
-      out.length = std::max(out.length, length);
+      s.position += part * Vec3(x);
+      s.rotation = (exp_quaternion(part * Vec3(x + 3)) * s.rotation).normalized();
+      for (int k = 0; k < modes(b); ++k) s.amplitude[k] += part * x[6 + k];
+      const double travel = (s.position - origin_[b]).norm() + part * length_of(b);
       if (travel <= out.furthest) continue;
       out.furthest = travel;
       furthest = bodies_[b].index;
@@ -174,6 +189,26 @@ class RestOfBodies {
   void place() {
     for (std::size_t b = 0; coupling_ && b < bodies_.size(); ++b)
       coupling_->place(static_cast<int>(b), at(b));
+  }
+
+  // The part of the step in load_ that is taken: all of it, or little more than leads to where something
+  // touches, as what goes into a wall is thrown off.
+  double part_to_touch(double beyond) {
+    double part = 1;
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      const double* const x = &load_[6 * row_[b]];
+      BodyState moves = at(b);
+      moves.velocity = Vec3(x);
+      moves.angular_velocity = moves.rotation.conjugate() * Vec3(x + 3);
+      moves.force.setZero();
+      moves.moment.setZero();
+      part = std::min(
+          part, beyond + bodies_[b].body->contacts_.next_landing(moves, Vec3::Zero(), Vec3::Zero(), part));
+      if (coupling_) coupling_->place(static_cast<int>(b), moves);
+    }
+    if (!coupling_) return part;
+    coupling_->start();
+    return std::min(part, beyond + coupling_->next_touch(coupling_->pairs(), part));
   }
 
   // A body's own forces and stiffness; its greatest unbalanced force, N.
@@ -236,8 +271,10 @@ class RestOfBodies {
 
   std::span<const ModelBody> bodies_;
   MemberCoupling* const coupling_;
-  const Parameters still_;
-  const StepInputs now_;
+  const Parameters limited_;  // with the friction that there is
+  Parameters still_;
+  StepInputs now_;
+  bool slips_not_ = true;
   State& state_;
   std::vector<std::vector<BodyContacts::TouchBuffer>> buffers_;  // per body, as all here but parts_
   std::deque<BodyContacts::ScratchLease> leases_;
@@ -255,7 +292,7 @@ StepStatus settle_bodies(std::span<const ModelBody> bodies, MemberCoupling* coup
                          const Parameters& parameters, State& state) {
   RestOfBodies rest(bodies, coupling, parameters, state);
   StepStatus status;
-  const Balance found = find_rest(rest);
+  const Balance found = find_rest(rest, k_most);
   if (found == Balance::rest) return status;
   status.kind = StepStatus::Kind::not_settled;
   status.no_rest = no_rest(found);

@@ -126,16 +126,35 @@ Outcome::Outcome(const Model& model)
     outcome.sides.resize(sides);
     bodies_.push_back(outcome);
     side_force_.emplace_back(sides, 0.);
+    inner_force_.emplace_back(sides, 0.);
     total_force_.push_back(0);
-    std::vector<std::vector<int>> side_of(body.contact_point_count);
-    for (int point : body.base_points)
-      for (std::size_t i = 0; i < sides; ++i) {
-        const Vec3 edge = body.support_polygon[(i + 1) % sides] - body.support_polygon[i];
-        const Vec3 to = model.node_position[model.contact_points[point].node] - body.support_polygon[i];
-        if (std::abs(edge.x() * to.y() - edge.y() * to.x()) < 1e-6 * edge.squaredNorm())
-          side_of[point - body.first_contact_point].push_back(static_cast<int>(i));
-      }
-    side_of_.push_back(std::move(side_of));
+    side_of_.emplace_back(body.contact_point_count);
+    inner_of_.emplace_back(body.contact_point_count);
+    for (int side = 0; side < static_cast<int>(sides); ++side) list_points(model, body, side);
+  }
+}
+
+// What rocks over the opposite side stands on the points farthest from this one; of a base with three legs or
+// five a corner between them may bear it.
+void Outcome::list_points(const Model& model, const Body& body, int side) {
+  const std::vector<Vec3>& corners = body.support_polygon;
+  const Vec3& from = corners[side];
+  const Vec3 edge = corners[(side + 1) % corners.size()] - from;
+  const double near = 1e-6 * edge.squaredNorm();
+  const auto before = [&](const Vec3& x) {
+    const Vec3 to = x - from;
+    return edge.x() * to.y() - edge.y() * to.x();
+  };
+  double farthest = 0;
+  for (const Vec3& corner : corners) farthest = std::max(farthest, before(corner));
+  for (const int point : body.base_points) {
+    const Vec3& x = model.node_position[model.contact_points[point].node];
+    const int own = point - body.first_contact_point;
+    const auto is_here = [&](const Vec3& corner) { return (corner - x).squaredNorm() < near; };
+    if (std::abs(before(x)) < near)
+      side_of_.back()[own].push_back(side);
+    else if (before(x) < farthest - near && std::none_of(corners.begin(), corners.end(), is_here))
+      inner_of_.back()[own].push_back(side);
   }
 }
 
@@ -159,15 +178,17 @@ void Outcome::carry(const Model& model, int part, double t, double u, const Vec3
 // What the sides of the bases carry.
 void Outcome::observe_forces(const Model& model, const std::vector<ContactForce>& forces,
                              const std::vector<MemberForce>& between) {
-  for (auto& sides : side_force_) std::fill(sides.begin(), sides.end(), 0.);
+  for (auto* carried : {&side_force_, &inner_force_})
+    for (auto& sides : *carried) std::fill(sides.begin(), sides.end(), 0.);
   std::fill(total_force_.begin(), total_force_.end(), 0.);
   for (const ContactForce& f : forces) {
     const int b = model.node_body[model.contact_points[f.point].node];
     bodies_[b].peak_penetration = std::max(bodies_[b].peak_penetration, f.depth);
     if (!is_floor(model.planes[f.plane])) continue;
     total_force_[b] += f.normal;
-    for (int side : side_of_[b][f.point - model.bodies[b].first_contact_point])
-      side_force_[b][side] += f.normal;
+    const int point = f.point - model.bodies[b].first_contact_point;
+    for (const int side : side_of_[b][point]) side_force_[b][side] += f.normal;
+    for (const int side : inner_of_[b][point]) inner_force_[b][side] += f.normal;
   }
   for (const MemberForce& f : between) {
     carry(model, f.elements.a, f.s, 0, f.force);
@@ -254,7 +275,8 @@ void Outcome::observe_sides(const State& state, double weight, std::size_t b, st
                         .value = static_cast<double>(i)});
     };
     const double carried = side_force_[b][i];
-    if (!side.open && carried < k_uplift * weight && total_force_[b] > k_closing * weight)
+    if (!side.open && carried + inner_force_[b][i] < k_uplift * weight &&
+        total_force_[b] > k_closing * weight)
       side = {.open = true, .counts = false, .since = state.time, .vertical = o.vertical};
     if (!side.open) continue;
     if (!side.counts && (o.vertical - side.vertical).norm() > k_uplift_angle) {

@@ -13,9 +13,10 @@
 
 namespace topple {
 
-/// Share of the body's weight. A side has let go when it carries less than k_uplift while the floor carries
-/// more than k_closing, and has closed again when it carries more than k_closing. Two thresholds, or a
-/// resting side would chatter.
+/// Share of the body's weight. A side has let go when it carries less than k_uplift, with what stands on the
+/// floor between it and the opposite side, while the floor carries more than k_closing; it has closed again
+/// when it carries more than k_closing itself. Two thresholds, or a resting side would chatter. On a floor
+/// that gives way an outer row of points sheds its load before a body whose inner rows bear begins to rock.
 inline constexpr double k_uplift = 1e-3;
 inline constexpr double k_closing = 1e-2;
 
@@ -140,6 +141,8 @@ class Outcome {
  private:
   /// Adds a force, N, at a place on a part (each_share) to what the sides of its body's base carry.
   void carry(const Model& model, int part, double t, double u, const Vec3& force);
+  /// Which points of the base of the newest body lie on a side, and before it.
+  void list_points(const Model& model, const Body& body, int side);
   void observe_forces(const Model& model, const std::vector<ContactForce>& forces,
                       const std::vector<MemberForce>& between);
   /// Of body b.
@@ -155,13 +158,15 @@ class Outcome {
   std::vector<BodyOutcome> bodies_;
   std::vector<AnchorOutcome> anchors_;
   std::vector<int> bearers_;
-  std::vector<char> broke_;                             ///< per element
-  std::vector<char> flowed_;                            ///< per node: a section beside it has flowed
-  int furniture_;                                       ///< bodies
-  std::vector<Eigen::Vector4d> unit_stress_;            ///< per section: Pa by N, Mx, My and Mz of one
-  std::vector<std::vector<double>> side_force_;         ///< per body, per side: N
-  std::vector<double> total_force_;                     ///< per body, N
-  std::vector<std::vector<std::vector<int>>> side_of_;  ///< per body: contact point (from 0) to its sides
+  std::vector<char> broke_;                   ///< per element
+  std::vector<char> flowed_;                  ///< per node: a section beside it has flowed
+  int furniture_;                             ///< bodies
+  std::vector<Eigen::Vector4d> unit_stress_;  ///< per section: Pa by N, Mx, My and Mz of one
+  /// Per body, per side: N, on it and between it and the opposite side.
+  std::vector<std::vector<double>> side_force_, inner_force_;
+  std::vector<double> total_force_;  ///< per body, N
+  /// Per body: contact point (from 0) to the sides that it lies on, and to those before which it lies.
+  std::vector<std::vector<std::vector<int>>> side_of_, inner_of_;
 };
 
 }  // namespace topple

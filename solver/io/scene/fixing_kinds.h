@@ -15,7 +15,7 @@ enum class FixingKind { l_bracket, strap, pole, mat, stopper, connector };
 /// Where on its body a fixing holds, unless the scene says `at`.
 enum class FixingPlace {
   near,   ///< both upper corners next to a wall; else the node nearest to what it leads to
-  top,    ///< the node nearest to the middle of the top
+  top,    ///< the middle of a block's top, else the node nearest to it
   feet,   ///< every corner of the base
   front,  ///< the corners of the base that are farthest from the wall
 };
@@ -28,7 +28,8 @@ struct FixingTraits {
   double stiffness;  ///< N/m, of each point
   double strength;   ///< N, of each point
   double preload;    ///< N, what it holds at the start; of a pole a push
-  double lift;       ///< m, how much longer it is than its place at the start: it wedges
+  double lift;       ///< m, how much longer it is than its place at the start, as far as the weight lets it:
+                     ///< it wedges
   double reach;      ///< m, greatest distance that it bridges
   bool pin;          ///< holds in all directions at one point (anchor.h), else along its line
   bool to_wall, to_floor, to_ceiling, to_body;

@@ -18,6 +18,8 @@ constexpr double k_upper = 0.05;      // of a body's height: what counts as its 
 constexpr double k_same = 1e-3;       // m: nodes as near as that are equally near
 constexpr double k_wedge = 0.1;       // m below the floor, from where a wedge pushes
 constexpr double k_least_gap = 1e-6;  // m
+constexpr double k_wedged = 0.9;      // of the weight: what wedges push with at most, so that the back stands
+constexpr double k_above = 100;       // m, any place above a body
 
 /// What a fixing leads to: a plane, or a body.
 struct Target {
@@ -59,16 +61,24 @@ class Fixing {
         entry_.fail("at", "a " + std::string(kind_.word) + " finds the corners of the base by itself");
       return add_one(entry_.vector("at"), entry_.name());
     }
+    if (kind_.place == FixingPlace::top && body().solid)
+      return add_one(nearest_on_block(body(), start_centre() + k_above * Vec3::UnitZ()), entry_.name());
     const std::vector<int> nodes = find_nodes();
     for (std::size_t k = 0; k < nodes.size(); ++k)
       add_one(start_.position[nodes[k]],
-              entry_.name() + (nodes.size() > 1 ? "-" + std::to_string(k + 1) : ""));
+              entry_.name() + (nodes.size() > 1 ? "-" + std::to_string(k + 1) : ""), nodes.size());
   }
 
  private:
   const Model& model() const { return setup_.model; }
   const Body& body() const { return model().bodies[body_]; }
   const Vec3& x(int node) const { return start_.position[node]; }
+  // Of the body's nodes.
+  Vec3 start_centre() const {
+    Vec3 sum = Vec3::Zero();
+    for (int i = body().first_node; i < body().first_node + body().node_count; ++i) sum += x(i);
+    return sum / body().node_count;
+  }
 
   Target find_target() const {
     const std::string name = entry_.text("to");
@@ -261,7 +271,8 @@ class Fixing {
                            model().members[member].name + "\", is " + millimetres(distance) + " away");
   }
 
-  void add_one(Vec3 point, const std::string& name) {
+  // One of `count`.
+  void add_one(Vec3 point, const std::string& name, std::size_t count = 1) {
     Anchor anchor;
     anchor.name = name;
     anchor.fixing = kind_.word;
@@ -278,13 +289,17 @@ class Fixing {
       anchor.to = point_of_other(point);
     } else if (kind_.place == FixingPlace::front) {
       anchor.to = Vec3(point.x(), point.y(), -k_wedge);
-      preload += kind_.lift * anchor.stiffness;
+      const double weight = body().mass * setup_.parameters.gravity.norm();
+      preload += std::min(kind_.lift * anchor.stiffness, k_wedged * weight / static_cast<double>(count));
       if (!setup_.run.settle)
         entry_.fail("kind",
                     "a stopper lifts its body, which comes to rest on it: write settle = true in [run]");
     } else {
       anchor.to = target_.on(point);
     }
+    if (const double below = -target_.distance(point); target_.ceiling && below > 0)
+      entry_.fail("to", "is " + millimetres(below) + " below the point of \"" + body().name +
+                            "\" from which a " + kind_.word + " leads there");
     const Vec3 foot = kind_.place == FixingPlace::front ? Vec3(point.x(), point.y(), 0) : anchor.to;
     const double gap = (point - foot).norm();
     if (gap > kind_.reach)

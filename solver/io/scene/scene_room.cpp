@@ -27,10 +27,13 @@ void read_walls(const Entry& root, Room& room) {
   }
 }
 
-int find_wall(const Entry& entry, const Room& room) {
+int find_wall(const Entry& root, const Entry& entry, const Room& room) {
   const std::string name = entry.text("wall");
   const auto wall = ranges::find(room.walls, name, &Room::Wall::name);
   if (wall != room.walls.end()) return static_cast<int>(wall - room.walls.begin());
+  for (const Entry& ramp : root.entries("wall"))
+    if (ramp.name() == name)
+      entry.fail("wall", "\"" + name + "\" does not stand upright: its normal leads up");
   std::string known;
   for (const Room::Wall& one : room.walls) known += (known.empty() ? "" : ", ") + one.name;
   entry.fail("wall", "there is no wall \"" + name + "\"; " +
@@ -98,7 +101,8 @@ void read_room(const Entry& root, Setup& setup) {
   if (doors.empty() && places.empty()) return;
   read_walls(root, room);
   for (const Entry& entry : doors) {
-    const Room::Door door{entry.name(), find_wall(entry, room), entry.number("at"), entry.number("width")};
+    const Room::Door door{entry.name(), find_wall(root, entry, room), entry.number("at"),
+                          entry.number("width")};
     check_opening(entry, room, door);
     room.doors.push_back(door);
   }

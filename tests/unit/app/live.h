@@ -32,6 +32,19 @@ alpha = "500 kgf"
 width = "90 mm"
 )" + k_library + k_cabinet;
 
+/// Two points on a wall behind the cabinet of k_rocking. Appended to it.
+inline const std::string k_brackets = R"(
+[[wall]]
+name = "behind"
+at = [-0.22, 0]
+normal = [1, 0, 0]
+[[fixing]]
+name = "held"
+kind = "L-bracket"
+body = "free"
+to = "behind"
+)";
+
 inline std::shared_ptr<const io::Scene> live_scene(const std::string& text = k_rocking,
                                                    const std::vector<std::string>& overrides = {}) {
   return std::make_shared<const io::Scene>(io::parse_scene(text, "live.toml", overrides));

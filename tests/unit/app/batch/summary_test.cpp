@@ -148,7 +148,7 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_many_impacts) {
   body["models"] = Json::array(
       {{{"from_s", 0}, {"model", "elastic"}, {"reason", "stresses are wanted"}, {"error_estimate", 4e-5}}});
   body["impacts"] = 10;
-  EXPECT_NE(summary_table(s).find("off from a frame by about 0.004 %)\n"), std::string::npos)
+  EXPECT_NE(summary_table(s).find("off from a frame by about 0.004 % until it lands)\n"), std::string::npos)
       << summary_table(s);
   body["impacts"] = 78;
   EXPECT_NE(summary_table(s).find("by about 0.004 % before its 78 impacts, which enlarge that)\n"),
@@ -236,8 +236,12 @@ TEST(Summary, the_method_of_what_was_computed_is_named) {
     topple::Run run(scene.setup);
     return summary_table(summary(scene, run, "completed", 0.5));
   };
-  EXPECT_NE(head("rigid").find("\ncentral differences, step 0.001 s"), std::string::npos) << head("rigid");
-  EXPECT_NE(head("frame").find("\ngeneralized-alpha (frames), central differences, step"), std::string::npos)
+  EXPECT_NE(head("rigid").find("\ncentral differences, TR-BDF2 on stiff contacts, step 0.001 s"),
+            std::string::npos)
+      << head("rigid");
+  EXPECT_NE(head("frame").find(
+                "\ngeneralized-alpha (frames), central differences, TR-BDF2 on stiff contacts, step"),
+            std::string::npos)
       << head("frame");
 }
 

@@ -38,6 +38,14 @@ TEST(Snap, turned_by_hand_it_keeps_its_turn_and_stands_off_by_its_side) {
   EXPECT_NEAR(spot.at.x() - 0.45 + 2, k_gap_at_wall, 1e-12);
 }
 
+TEST(Snap, a_back_at_a_wall_is_told_from_a_side_and_from_far) {
+  const std::vector<WallLine> walls{k_back, k_side};
+  EXPECT_TRUE(backs_wall(footprint(-1.79, 0), walls));
+  EXPECT_FALSE(backs_wall(footprint(-1.54, 0, k_pi / 2), walls));
+  EXPECT_FALSE(backs_wall(footprint(-1.5, 0), walls));
+  EXPECT_TRUE(backs_wall(footprint(0, 1.79, -k_pi / 2), walls));
+}
+
 TEST(Snap, behind_a_wall_it_comes_back_into_the_room) {
   const std::vector<WallLine> walls{k_back};
   EXPECT_NEAR(snapped(footprint(-5, 0), {}, walls, false).at.x(), -2 + 0.2 + k_gap_at_wall, 1e-12);

@@ -9,6 +9,7 @@
 
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
+#include "app/support/terms.h"
 #include "solver/run/overturn.h"
 #include "unit/app/live.h"
 
@@ -150,6 +151,30 @@ TEST(Subject, contacts_in_the_middle_of_a_member_are_told) {
     approximate += is_approximate(model, row, m);
   }
   EXPECT_GE(approximate, 4);
+}
+
+TEST(Subject, an_anchor_has_its_strength_and_the_greatest_force_between_rows_too) {
+  const auto scene = live_scene(k_rocking + k_brackets);
+  topple::Run run(scene->setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  LiveRun live({.scene = scene}, [] {});
+  Player player(scene, live);
+  const auto work = [&] { player.update(0.01); };
+  ASSERT_TRUE(eventually(work, [&] { return player.can_edit(); }));
+  while (player.speed() < k_most_speed) player.faster();
+  player.play();
+  ASSERT_TRUE(eventually(work, [&] { return player.status().kind == LiveStatus::Kind::over; }));
+  const io::FrameRow row = *player.row();
+  const FrameContext now = frame_context(player, row);
+  ASSERT_EQ(now.anchor_peaks.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double peak = run.outcome().anchors()[k].peak_force;
+    EXPECT_GT(peak, 0);
+    EXPECT_EQ(now.anchor_peaks[k], peak);
+    EXPECT_EQ(about(now, {Subject::Kind::anchor, k}).at(2),
+              fmt::format("strength 1.5e+03 N, greatest force {:.3g} N, {} of its strength", peak,
+                          percent_of(peak, 1500)));
+  }
 }
 
 TEST(Subject, names_are_found_and_others_refused_with_what_there_is) {

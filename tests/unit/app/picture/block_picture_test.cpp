@@ -24,7 +24,7 @@ TEST(BlockPicture, is_one_solid_with_its_surface_half_a_width_outside) {
   settings.panels = true;
   const Bridge bridge(scene, extent);
   render::SceneFrame frame = bridge.frame(row, scene.setup.parameters, settings);
-  bridge.add_ghost(row, settings, frame);
+  bridge.add_ghost(row, row, settings, frame);
   ASSERT_EQ(frame.tubes.size(), 1u);
   EXPECT_EQ(frame.ghost_tubes.size(), 1u);
   EXPECT_TRUE(frame.panels.empty());

@@ -64,7 +64,7 @@ TEST_F(BridgeTest, of_a_row_that_is_not_finite_nothing_is_drawn_but_the_floor) {
   const Bridge bridge(scene_, extent_);
   const auto expect_clean = [&](const io::FrameRow& row) {
     render::SceneFrame frame = bridge.frame(row, scene_.setup.parameters, settings);
-    bridge.add_ghost(row, settings, frame);
+    bridge.add_ghost(row, row, settings, frame);
     EXPECT_TRUE(frame.tubes.empty() && frame.stations.empty() && frame.ghost_stations.empty());
     EXPECT_TRUE(frame.panels.empty() && frame.arrows.empty() && frame.rings.empty());
     EXPECT_FALSE(frame.grounds.empty());
@@ -546,7 +546,7 @@ at = [1, 1, 0]
   const Bridge bridge(scene, extent);
   render::SceneFrame frame = bridge.frame(row, setup.parameters);
   const std::vector<std::string>& lines = frame.caption.lines;
-  for (const char* told : {"seat: cannot leave, box lies where they stand", "seat: hit by box at 1.00 s"})
+  for (const char* told : {"seat: cannot leave, box is where they stand", "seat: hit by box at 1.00 s"})
     EXPECT_NE(std::ranges::find(lines, told), lines.end()) << told;
   EXPECT_GE(frame.caption.most_lines, static_cast<int>(lines.size()));
   for (const std::string& line : Bridge(scene, extent, false).frame(row, setup.parameters).caption.lines)

@@ -290,6 +290,7 @@ class Shortcut : public ShellTest {
     EXPECT_TRUE(pulls().empty());
     let_go();
     const auto before = sight();
+    for (int i = 0; i < 3; ++i) player().slower();  // as run_to
     tap(' ');
     take_hold();
     const ImVec2 from = io.MousePos;
@@ -309,6 +310,7 @@ class Shortcut : public ShellTest {
   /// Back to an instant at which it was pulled: it is not any more.
   void pull_is_not_taken_up() {
     tap(' ');
+    for (int i = 0; i < 3; ++i) player().faster();
     ASSERT_TRUE(until([&] { return player().edits().size() > 2; }));
     const double pulled = player().edits().front().time + 0.02;
     run_to(pulled + 0.1);

@@ -23,19 +23,6 @@ namespace {
 constexpr float k_width = 1280, k_height = 720;
 constexpr int k_space = ' ';
 
-/// Two points on a wall behind the cabinet of k_rocking. Appended to it.
-const std::string k_brackets = R"(
-[[wall]]
-name = "behind"
-at = [-0.22, 0]
-normal = [1, 0, 0]
-[[fixing]]
-name = "held"
-kind = "L-bracket"
-body = "free"
-to = "behind"
-)";
-
 class ViewerTest : public ::testing::Test {
  protected:
   ViewerTest() : interface_(ImGui::CreateContext()) { hold_keys_by_hand(); }
