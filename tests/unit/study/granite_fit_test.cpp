@@ -208,7 +208,7 @@ TEST(GraniteFit, landings_of_the_rigid_model_leave_the_factor_on_housners_rate) 
   const RockTraits& traits = rocks()[k_rock];
   for (const double factor : {0.85, 0.6}) {
     const Rock rock{0.03, 0.025, factor, 1.3};
-    RigidRock rigid(traits, rock, push(1.6 * 9.80665 * rock.left / traits.height, 0.45));
+    RigidRock rigid(traits, rock, push(1.55 * 9.80665 * rock.left / traits.height, 0.45));
     std::vector<double> rates;
     double tilt_before = 0, square_before = 0;
     while (!rigid.over()) {
