@@ -192,6 +192,23 @@ TEST_F(FurnishTest, a_room_is_shaken_and_the_run_before_it_stays_as_a_ghost) {
   EXPECT_EQ(room().text(), new_room()) << "undo reaches behind the run";
 }
 
+TEST_F(FurnishTest, a_room_that_is_in_no_file_comes_back_from_a_demo_with_its_run) {
+  place("desk", {0.6, -0.4});
+  press(' ');
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  run_to(0.1);
+  const std::string run = shell_->session()->recording(), text = shell_->session()->scene().text;
+  ASSERT_FALSE(run.empty());
+  shell_->session()->viewer().show(Viewer::Tab::teach);
+  click(std::string(demos()[0].name.english) + "##demo0", "side/content");
+  ASSERT_TRUE(until([&] { return shell_->session()->viewer().teaching().guide.has_value(); }));
+  ASSERT_TRUE(until([&] { return shell_->session()->viewer().teaching().guide->step() == 0; }));
+  click("Back to " + std::filesystem::path(run).filename().string(), "side/content");
+  ASSERT_TRUE(until([&] { return shell_->session()->scene().text == text; }));
+  EXPECT_FALSE(shell_->message().has_value());
+  EXPECT_TRUE(until([&] { return player().can_continue() || player().end() > 0.05; }));
+}
+
 TEST_F(FurnishTest, a_room_is_saved_as_it_is_written) {
   place("desk", {0.6, -0.4});
   const std::string path = (scratch_ / "mine.toml").string();

@@ -291,6 +291,48 @@ TEST_F(ViewerTest, the_timeline_scrubs_and_a_branch_continues_from_there) {
   EXPECT_TRUE(player_->ghost().has_value());
 }
 
+// Before the fork two branches share their rows: only the pale one is another.
+TEST_F(ViewerTest, a_branch_shown_at_the_same_instant_is_drawn_with_its_own_pale_one) {
+  start();
+  const auto run_to_end = [&] {
+    press(k_space);
+    return until([&] { return player_->status().kind == LiveStatus::Kind::over; });
+  };
+  for (int i = 0; i < 3; ++i) type(']');
+  ASSERT_TRUE(run_to_end());
+  for (const double fork : {0.1, 0.6}) {
+    player_->scrub(fork);
+    press('C');
+    ASSERT_TRUE(until([&] { return player_->can_edit(); }));
+    player_->edit({Edit::Key::amplitude, 0, Vec3(6, 0, 0)});
+    ASSERT_TRUE(run_to_end());
+  }
+  player_->scrub(0.5);
+  const auto scene = [&] {
+    for (int i = 0; i < 60; ++i) frame();  // at its best, as nothing moves
+    const Box& box = viewer_->scene_box();
+    const render::Image whole = shot();
+    std::vector<std::uint8_t> part;
+    for (int y = static_cast<int>(0.4f * box.height); y < static_cast<int>(box.height); ++y) {
+      const auto* const row = whole.rgba.data() + static_cast<std::ptrdiff_t>(y) * whole.width * 4;
+      part.insert(part.end(), row, row + static_cast<std::ptrdiff_t>(box.width) * 4);
+    }
+    return part;
+  };
+  ASSERT_EQ(player_->ghost_branch(), 1);
+  const auto beside_its_like = scene();
+  player_->show_branch(0);
+  frame();
+  player_->show_branch(1);
+  player_->scrub(0.5);
+  ASSERT_EQ(player_->ghost_branch(), 0);
+  EXPECT_NE(scene(), beside_its_like);
+  player_->show_branch(2);
+  player_->scrub(0.5);
+  ASSERT_EQ(player_->ghost_branch(), 1);
+  EXPECT_EQ(scene(), beside_its_like);
+}
+
 // The beginning is the nearest to the lower left corner, the end to the right of the upper edge, and the knee
 // at load step 24, where the first hinges form, to its middle: that is known to 9 px, 1.5 load steps.
 TEST_F(ViewerTest, a_click_on_the_path_of_a_static_run_goes_to_the_load_step_there) {
