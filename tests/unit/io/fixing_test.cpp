@@ -173,6 +173,46 @@ TEST(Fixing, a_pole_pushes_with_its_preload_from_the_start) {
   ASSERT_TRUE(run.advance().ok());
   // the block settles by some micrometres more than without it
   EXPECT_NEAR(run.outcome().anchors()[0].tension, -150, 1);
+  const Vec3 top = held_point(scene.setup.model.anchors[0], run.state());
+  EXPECT_LT(top.head<2>().norm(), 1e-4) << "not in the middle of the top";
+  EXPECT_NEAR(top.z(), 1.8, 0.01);
+}
+
+// Two wedges lift the front edge until the shelf's back leans on the wall, 10 mm off, 1.785 m above its feet:
+// whatever its contacts and its model are, and without sliding.
+TEST(Fixing, a_stopper_leans_a_heavy_shelf_on_the_wall_where_it_stands) {
+  const std::string text = R"(topple = 1
+[run]
+want = ["motion"]
+[floor]
+[[wall]]
+name = "back"
+at = [0, 0]
+normal = [1, 0, 0]
+[[furniture]]
+kind = "bookshelf"
+against = "back"
+gap = "10 mm"
+[[fixing]]
+name = "stop"
+kind = "stopper"
+body = "bookshelf"
+to = "floor"
+)";
+  for (const std::vector<std::string>& set :
+       std::vector<std::vector<std::string>>{{},
+                                             {"wall.1.at=[-0.2, 0]"},
+                                             {"contact.alpha=\"20000 kgf\""},
+                                             {"furniture.1.model=elastic"},
+                                             {"furniture.1.model=frame"}}) {
+    SCOPED_TRACE(set.empty() ? "" : set.front());
+    const Scene scene = parse_scene(text, "s.toml", set);
+    topple::Run run(scene.setup);
+    ASSERT_TRUE(run.status().ok()) << run.status().message(scene.setup.model);
+    // the wall gives by what half a per cent of the weight takes, a frame bends
+    EXPECT_NEAR(run.outcome().bodies()[0].tilt, std::atan(10 / 1785.), 0.03 * std::atan(10 / 1785.));
+    EXPECT_LT(run.outcome().bodies()[0].slide, 3e-4);
+  }
 }
 
 // The front edge comes up by as much as the wedges were pushed in beyond their share of the weight: light as
@@ -212,6 +252,18 @@ TEST(Fixing, what_cannot_be_is_told_in_a_line_with_its_place) {
             "s.toml:31:6: fixing.it.to: a pole pushes only, between the top and the ceiling; \"back\" is "
             "none of the "
             "ceiling");
+  const std::string low = blocks(fixing("pole", "ceiling"));
+  const auto refused = [&](const std::string& set) {
+    try {
+      parse_scene(low, "s.toml", {set});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(
+      refused("ceiling.at=1.5"),
+      "s.toml:31:6: fixing.it.to: is 307.5 mm below the point of \"left\" from which a pole leads there");
   EXPECT_EQ(refusal(fixing("strap", "back", "at = [0, 0, 2.5]\n")),
             "s.toml:32:6: fixing.it.at: finds no point of \"left\" within 100 mm: the nearest member, "
             "\"top-front\", is "

@@ -144,5 +144,34 @@ TEST(SceneBlock, a_cabinet_that_cannot_be_solid_names_it) {
   EXPECT_TRUE(error.ends_with(" times that; add shelves, or use [[block]]")) << error;
 }
 
+// A planar block takes steps of some 40 ms; a trapezoidal rule that long is off by 1 %.
+TEST(SceneBlock, the_floor_moves_alike_whatever_the_steps_are) {
+  const auto floor = [](const std::vector<std::string>& set) {
+    const Scene scene = parse_scene(R"(topple = 1
+[run]
+duration = "3 s"
+[floor]
+[contact]
+friction = 0.2
+[[shake]]
+frequency = "1 Hz"
+amplitude = "400 gal"
+cycles = 2
+[[block]]
+name = "b"
+size = [0.5, 0.5, 0.2]
+mass = 50
+)",
+                                    "s.toml", set);
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    return std::pair(run.state().floor_displacement.x(), run.step());
+  };
+  const auto [coarse, few] = floor({});
+  const auto [fine, many] = floor({"run.time_step=\"1 ms\""});
+  EXPECT_LT(10 * few, many);
+  EXPECT_NEAR(coarse, fine, 1e-3 * std::abs(fine));
+}
+
 }  // namespace
 }  // namespace topple::io

@@ -168,6 +168,10 @@ TEST_F(FragilityTest, bodies_that_a_run_of_the_scene_makes_finer_are_told) {
       << coarser;
   const std::string alike = said({"--set", "run.accuracy=0.01"});
   EXPECT_EQ(alike.find("a run of the scene has"), std::string::npos) << alike;
+  // where people are, how far pieces slide counts
+  write_bytes("s.toml", shelves_of_books(1) + "[[place]]\nat = [3, 3]\n");
+  const std::string as_run = said({});
+  EXPECT_EQ(as_run.find("a run of the scene has"), std::string::npos) << as_run;
 }
 
 }  // namespace
