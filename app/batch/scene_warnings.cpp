@@ -139,21 +139,21 @@ double alpha_for_tipping(const Setup& setup) {
   return alpha;
 }
 
-void warn_of_alpha(const Setup& setup, std::vector<std::string>& list) {
+}  // namespace
+
+std::string soft_contact_warning(const Setup& setup) {
   const Parameters& p = setup.parameters;
   const std::optional<double> early = early_tipping(setup);
   const std::optional<double> rigid = rigid_alpha(setup.model, p.contact, p.gravity);
-  if (!early || !rigid || *early <= k_early) return;
-  list.push_back(fmt::format(
+  if (!early || !rigid || *early <= k_early) return "";
+  return fmt::format(
       "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
       "acceleration than on a rigid floor; {:.0f} kgf keeps that below {:g} %; no alpha at all takes "
       "{:.0f} kgf, with which it lands as on a rigid floor too",
       p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
       rounded_up(alpha_for_tipping(setup) / k_standard_gravity), 100 * k_hardly,
-      rounded_up(*rigid / k_standard_gravity)));
+      rounded_up(*rigid / k_standard_gravity));
 }
-
-}  // namespace
 
 std::string bending_warning(const Setup& setup) {
   constexpr int k_room = 5;  // bodies, of which the cost is felt
@@ -181,8 +181,8 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_anchors(setup, start, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
-  warn_of_alpha(setup, list);
-  if (std::string bending = bending_warning(setup); !bending.empty()) list.push_back(std::move(bending));
+  for (std::string words : {soft_contact_warning(setup), bending_warning(setup)})
+    if (!words.empty()) list.push_back(std::move(words));
   warn_of_shakes(setup.parameters.shakes, list);
   return list;
 }

@@ -11,9 +11,12 @@ namespace topple::app {
 /// One sentence each: what will happen, where, and what to try.
 /// - An anchor in the middle of an edge that bends: it gives with the edge.
 /// - A body that nothing bears when the run begins.
-/// - Contacts so soft that a side lifts at less than 95 % of the acceleration that lifts it on a rigid floor.
-/// - bending_warning().
+/// - soft_contact_warning() and bending_warning().
 std::vector<std::string> scene_warnings(const Setup& setup);
+
+/// Of contacts so soft that a side lifts at less than 95 % of the acceleration that lifts it on a rigid
+/// floor; empty: they are stiffer.
+std::string soft_contact_warning(const Setup& setup);
 
 /// Of a room in which many bodies bend more than run.accuracy allows rigid ones to; empty: there are few.
 std::string bending_warning(const Setup& setup);

@@ -92,6 +92,8 @@ std::string ways_in_words(const ordered_json& ways, double person) {
       out +=
           way["blocked_by"].empty() ? ": the door is narrower" : ", blocked by " + joined(way["blocked_by"]);
     }
+    if (way["open"] == false && way.contains("before") && way["before"]["open"] == false)
+      out += ", as before the shake";
     const std::string hits = hits_in_words(way);
     out += (hits.empty() ? "" : "; hit by " + hits) + "\n";
   }

@@ -183,7 +183,7 @@ std::vector<std::string> about_anchor(const FrameContext& now, std::size_t index
   const bool breaks = std::isfinite(anchor.strength);
   std::string words = breaks ? say(window_words::k_anchor_strength, value_text(anchor.strength)) : "";
   if (index < now.anchor_peaks.size()) {
-    const double peak = std::min(now.anchor_peaks[index], anchor.strength);
+    const double peak = now.anchor_peaks[index];
     words += (words.empty() ? "" : say(window_words::k_comma)) +
              say(window_words::k_anchor_peak, value_text(peak)) +
              (breaks ? say(window_words::k_of_strength, percent_of(peak, anchor.strength)) : "");

@@ -133,7 +133,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   out.bounds_min = to_float(extent_.low - Vec3::Constant(skin));
   out.bounds_max = to_float(extent_.high + Vec3::Constant(skin));
   if (!is_finite(row)) {
-    out.caption.title = scene_.title;
+    out.caption.title = title_in_words(scene_, parameters);
     out.caption.lines.push_back(say(window_words::k_not_finite));
     add_grounds(Vec3::Zero(), out);
     return out;
@@ -402,7 +402,7 @@ void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
 void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
                           const PictureSettings& settings, render::SceneFrame& out) const {
   const Setup& setup = scene_.setup;
-  out.caption.title = scene_.title;
+  out.caption.title = title_in_words(scene_, parameters);
   out.caption.lines.push_back(instant_in_words(setup, row));
   if (!parameters.shakes.empty()) {
     const Shake& shake = parameters.shakes.front();

@@ -13,6 +13,7 @@
 #include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
+#include "solver/run/edit.h"
 
 namespace topple::app {
 namespace {
@@ -104,6 +105,15 @@ std::string others_in_words(const Model& model, const Vec3& gravity, const io::F
 }
 
 }  // namespace
+
+std::string title_in_words(const io::Scene& scene, const Parameters& parameters) {
+  const Model& model = scene.setup.model;
+  const bool changed = ranges::any_of(editable(model, parameters), [&](const auto& edited) {
+    const auto& [key, index] = edited;
+    return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
+  });
+  return changed ? say(k_title_changed, scene.title) : scene.title;
+}
 
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,
                           std::size_t body) {

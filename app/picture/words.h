@@ -5,9 +5,13 @@
 #include <vector>
 
 #include "solver/io/recording/observer.h"
+#include "solver/io/scene/scene.h"
 #include "solver/run/run.h"
 
 namespace topple::app {
+
+/// The scene's title; with `parameters` that were changed since, "A cabinet under 190 gal (changed)".
+std::string title_in_words(const io::Scene& scene, const Parameters& parameters);
 
 /// "free: leans 4.2° of 10.9°". gravity: m/s^2.
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body);

@@ -54,7 +54,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
       height += std::round(1.3f * font->FontSize);
     }
   };
-  if (!low) add(fonts_.text, player_.scene().title);
+  if (!low) add(fonts_.text, title_in_words(player_.scene(), player_.parameters_so_far()));
   add(fonts_.small, instant_in_words(player_.scene().setup, row) + "   " +
                         shake_in_words(player_.parameters_so_far(), row.time));
   const Model& model = player_.scene().setup.model;

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/element/plasticity.h"
 #include "solver/frame/start_vector.h"
 #include "solver/math/ranges.h"
+#include "solver/state/sections.h"
 
 namespace topple {
 namespace {
@@ -62,6 +64,37 @@ void add_softest_mode(BodySystem& s, const std::vector<double>& growth, Stabilit
   out.loss = hinged                                                     ? Stability::Loss::mechanism
              : std::abs(share) > k_beside * std::sqrt(loads) * greatest ? Stability::Loss::limit_point
                                                                         : Stability::Loss::buckling;
+}
+
+bool is_at_yield(const Model& model, const State& state, int index) {
+  constexpr double k_at_yield = 1e-3;
+  std::vector<SectionForces> forces(model.elements.size());
+  section_forces(model, state, index, forces);
+  const Body& body = model.bodies[index];
+  for (int m = body.first_member; m < body.first_member + body.member_count; ++m)
+    for (int k = 0; k < model.members[m].element_count; ++k) {
+      const int e = model.members[m].first_element + k;
+      const Element& element = model.elements[e];
+      for (const double end : {-1., 1.})
+        if (yield_function(element, forces_along(forces[e], element.length, element.s, end)) > -k_at_yield)
+          return true;
+    }
+  return false;
+}
+
+bool add_collapse(const BodySystem& s, const std::vector<double>& growth, Stability& out) {
+  std::vector<double> way = growth;
+  s.lu.solve(way.data());
+  double greatest = 0;
+  for (int i = 0; i < s.count; ++i) {
+    const Vec3 shift(&way[6 * i]);
+    if (!(shift.norm() > greatest)) continue;
+    greatest = shift.norm();
+    out.node = s.first + i;
+    out.direction = shift / greatest;
+    out.loss = Stability::Loss::mechanism;
+  }
+  return greatest > 0;
 }
 
 bool is_free(const BodySystem& s) {

@@ -346,7 +346,8 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
   return blame(status.node);
 }
 
-// By the softest mode of a body's last equilibrium, when there is none beyond it.
+// By a body's last equilibrium, when there is none beyond it: where sections yield it collapses, else its
+// softest mode runs away.
 Stability LoadPath::what_is_lost(const Parameters& parameters, const State& state, int body) {
   BodySystem& s = *systems_[body];
   s.load(state, start_[body]);
@@ -357,7 +358,8 @@ Stability LoadPath::what_is_lost(const Parameters& parameters, const State& stat
   Stability out = stability_of(s, growth);
   if (out.negative_pivots >= 0 && out.loss != Stability::Loss::mechanism && is_free(s))
     return {.loss = Stability::Loss::mechanism};
-  if (out.negative_pivots == 0) add_softest_mode(s, growth, out);
+  if (out.negative_pivots == 0 && !(is_at_yield(*model_, state, body) && add_collapse(s, growth, out)))
+    add_softest_mode(s, growth, out);
   return out;
 }
 

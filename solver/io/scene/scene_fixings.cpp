@@ -2,6 +2,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "solver/contact/panel_place.h"
@@ -19,6 +20,7 @@ constexpr double k_same = 1e-3;       // m: nodes as near as that are equally ne
 constexpr double k_wedge = 0.1;       // m below the floor, from where a wedge pushes
 constexpr double k_least_gap = 1e-6;  // m
 constexpr double k_wedged = 0.9;      // of the weight: what wedges push with at most, so that the back stands
+constexpr double k_leans_over = 0.5;  // m, to a wall that is named
 constexpr double k_above = 100;       // m, any place above a body
 
 /// What a fixing leads to: a plane, or a body.
@@ -182,8 +184,14 @@ class Fixing {
       case FixingPlace::front: {
         const Target wall = nearest_wall();
         std::vector<int> nodes = feet();
-        double farthest = 0;
-        for (const int node : nodes) farthest = std::max(farthest, wall.distance(x(node)));
+        double farthest = 0, nearest = std::numeric_limits<double>::infinity();
+        for (const int node : nodes) {
+          farthest = std::max(farthest, wall.distance(x(node)));
+          nearest = std::min(nearest, wall.distance(x(node)));
+        }
+        if (target_.wall && nearest > k_leans_over)
+          entry_.fail("to", "is " + millimetres(nearest) + " from \"" + body().name +
+                                "\": a stopper leans it towards a wall within " + millimetres(k_leans_over));
         std::erase_if(nodes, [&](int node) { return wall.distance(x(node)) < farthest - k_same; });
         return nodes;
       }
@@ -304,7 +312,8 @@ class Fixing {
     const double gap = (point - foot).norm();
     if (gap > kind_.reach)
       entry_.fail("to", "finds no point within " + millimetres(kind_.reach) + ": from \"" + body().name +
-                            "\" to \"" + target_.name + "\" it is " + millimetres(gap));
+                            "\" to \"" + target_.name + "\" it is " + millimetres(gap) +
+                            (target_.body >= 0 ? " between centre lines; `at` says where it is" : ""));
     if (target_.body >= 0) check_reach("to", target_.body, anchor.to);
     if (kind_.pin) point = anchor.to = target_.body >= 0 ? Vec3((point + anchor.to) / 2) : point;
     if (!kind_.pin && kind_.type != Anchor::Type::bracket && !((point - anchor.to).norm() > k_least_gap))

@@ -137,5 +137,42 @@ INSTANTIATE_TEST_SUITE_P(BuiltIn, HingeScenes,
                            return name;
                          });
 
+// A cantilever of 1 m, deeper than wide, under a load at its tip: elastic up to Mp/L, a mechanism there; its
+// softest elastic mode is sideways.
+TEST(CollapseOfACantilever, is_a_mechanism_that_goes_with_its_load) {
+  const topple::Setup setup = io::parse_scene(R"(topple = 1
+[run]
+analysis = "static"
+gravity = [0, 0, 0]
+load_steps = 40
+[[material]]
+name = "steel"
+young = "200 GPa"
+poisson = 0.3
+density = 7850
+yield = "250 MPa"
+[[section]]
+name = "bar"
+shape = "solid"
+size = ["20 mm", "30 mm"]
+[[frame]]
+name = "beam"
+nodes = [[0, 0, 0], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "bar", material = "steel" }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+loads = [{ node = 1, force = [0, 0, "-2 kN"] }]
+)",
+                                              "beam.toml")
+                                  .setup;
+  topple::Run run(setup);
+  while (!run.over() && run.advance().ok()) {
+  }
+  const double collapse = 250e6 * 0.02 * 0.03 * 0.03 / 4 / 2e3;  // Mp/L over the load
+  EXPECT_NEAR(run.state().load_factor, collapse, 2e-3 * collapse);
+  const Stability& lost = run.status().stability;
+  EXPECT_EQ(lost.loss, Stability::Loss::mechanism);
+  EXPECT_LT(lost.direction.z(), -0.99);
+}
+
 }  // namespace
 }  // namespace topple::test
