@@ -41,7 +41,9 @@ FurnishView::FurnishView(render::Stage& stage, const io::Scene& scene, std::stri
 
 void FurnishView::begin_new_room() {
   let_go();
-  if (change([](const io::Scene&) { return new_room(); })) fitted_ = false;
+  if (!change([](const io::Scene&) { return new_room(); })) return;
+  another_ = true;
+  fitted_ = false;
 }
 
 void FurnishView::select(const std::string& name) {

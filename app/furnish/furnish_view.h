@@ -48,6 +48,9 @@ class FurnishView {
 
   /// Begins with another room in place of this one; undo leads back.
   void begin_new_room();
+  /// It began so and was not looked at as a run since.
+  bool is_another() const { return another_; }
+  void begin_run() { another_ = false; }
 
   /// As of Furnishing.
   bool change(const RoomEdit& edit);
@@ -172,7 +175,7 @@ class FurnishView {
   bool dragging_ = false, dragged_ = false, from_card_ = false;
   bool room_changed_ = true, frame_changed_ = true, camera_changed_ = true, drawn_still_ = false;
   double quiet_ = 0;
-  bool keys_shown_ = false, panels_have_keys_ = false;
+  bool keys_shown_ = false, panels_have_keys_ = false, another_ = false;
   ShellRequest asked_ = ShellRequest::none;
   char name_[256] = {}, own_kind_[1024] = {};
   std::string named_, message_;  ///< named_: whose name name_ is

@@ -292,14 +292,13 @@ void Player::restart() {
     pause();
     const io::FrameRow& first = *way_.front();
     ++forks_asked_;
-    run_.fork(first.branch, first.step, edits_since_start());
+    run_.fork(first.branch, first.step,
+              edits_from(parameters_at(scene_->setup, history_, first.branch, first.step)));
   }
   if (goes_on) play();
 }
 
-std::vector<Edit> Player::edits_since_start() const {
-  const io::FrameRow& first = *way_.front();
-  const Parameters there = parameters_at(scene_->setup, history_, first.branch, first.step);
+std::vector<Edit> Player::edits_from(const Parameters& there) const {
   std::vector<Edit> edits;
   for (const auto& [key, shake] : editable(scene_->setup.model, parameters_)) {
     const Vec3 value = edited_value(parameters_, key, shake);

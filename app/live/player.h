@@ -75,8 +75,8 @@ class Player {
   void edit(const Edit& edit);
   /// The same of a pull, which is not undone.
   void pull(const Edit& edit);
-  /// The edits that turn the parameters of the first frame, which must exist, into the present ones.
-  std::vector<Edit> edits_since_start() const;
+  /// The edits that turn these parameters, of the same model, into the present ones.
+  std::vector<Edit> edits_from(const Parameters& there) const;
   bool can_undo() const { return can_edit() && !undo_.empty(); }
   bool can_redo() const { return can_edit() && !redo_.empty(); }
   void undo();

@@ -183,7 +183,7 @@ void Bridge::add_ghost(const io::FrameRow& row, const io::FrameRow& beside, cons
                        render::SceneFrame& out) const {
   if (!is_finite(row)) return;
   io::FrameRow drawn = row;
-  std::ranges::copy(beside.floor_displacement, drawn.floor_displacement);
+  ranges::copy(beside.floor_displacement, drawn.floor_displacement);
   exaggerate(scene_.setup.model, rigid_fit(scene_.setup.model, row), settings.exaggeration, drawn);
   add_tubes(
       drawn, [](std::size_t, double) { return 0.f; }, out.ghost_stations, out.ghost_tubes);

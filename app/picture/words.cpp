@@ -8,6 +8,7 @@
 #include <numeric>
 #include <span>
 
+#include "app/picture/furnish_words.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "solver/math/ranges.h"
@@ -172,6 +173,7 @@ int most_lines_of_bodies(const Model& model) {
 }
 
 std::string anchor_type_in_words(const Anchor& anchor) {
+  if (!anchor.fixing.empty()) return furnish_words::in_words(furnish_words::k_fixing_kinds, anchor.fixing);
   static constexpr const Phrase* k_types[] = {&k_strap, &k_bracket, &k_pole};
   return say(*k_types[static_cast<std::size_t>(anchor.type)]);
 }
@@ -193,9 +195,11 @@ const Phrase& anchor_state(float state) {
 std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::size_t k) {
   const Anchor& anchor = model.anchors[k];
   const io::AnchorNumbers& now = row.anchor[k];
-  const bool named_by_type = anchor.name == anchor_type(anchor);
-  const std::string line =
-      anchor_type_in_words(anchor) + (named_by_type ? "" : " " + anchor.name) + say(k_colon);
+  const std::string type = anchor.fixing.empty() ? anchor_type(anchor) : anchor.fixing;
+  const std::string own = anchor.name == type                   ? ""
+                          : anchor.name.starts_with(type + "-") ? anchor.name.substr(type.size())
+                                                                : " " + anchor.name;
+  const std::string line = anchor_type_in_words(anchor) + own + say(k_colon);
   const float state = state_of(anchor, now);
   if (state != io::k_anchor_holds || now.tension == 0) return line + say(anchor_state(state));
   const double force = std::abs(now.tension);

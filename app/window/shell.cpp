@@ -78,7 +78,7 @@ void Shell::show(LiveSource source, const std::string& path) {
     keep_room();
     room_.reset();
   }
-  shaken_ = shaking_ ? source.scene.get() : nullptr;
+  before_ = shaken_ = shaking_ ? source.scene.get() : nullptr;
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);
@@ -131,11 +131,12 @@ bool Shell::finish_opening() {
   try {
     LiveSource source = done.take();
     std::optional<EarlierRun> before;
-    if (shaking_ && session_ && session_->scene().text != room_->room().text() &&
-        session_->player().way().size() > 1)
+    if (shaking_ && session_ && before_ == &session_->scene() && !room_->is_another() &&
+        session_->scene().text != room_->room().text() && session_->player().way().size() > 1)
       before = EarlierRun(session_->scene_ptr(), session_->player().way());
     show(std::move(source), opening_path_);
     if (shaking_) {
+      room_->begin_run();
       session_->viewer().look(room_->orbit());
       PictureSettings settings = session_->viewer().settings();
       settings.bodies = Bodies::solid;  // as the room was seen

@@ -115,6 +115,7 @@ class Shell {
   bool furnishing_ = false;            ///< room_ is shown, not the session
   bool shaking_ = false;               ///< what is being opened is room_
   const io::Scene* shaken_ = nullptr;  ///< the session's that came of room_; null: it did not
+  const io::Scene* before_ = nullptr;  ///< the session's of which room_ is a changed one; null: it is none
   std::optional<io::Scene> to_save_;   ///< room_ as it is saved
   std::string kept_room_;              ///< its text when it was written last
   std::vector<std::future<LiveStatus>> closing_;

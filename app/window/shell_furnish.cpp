@@ -53,6 +53,7 @@ void Shell::furnish() {
                                             source.ends_with(".toml") ? source : scene.name + ".toml",
                                             session_->viewer().orbit());
     }
+    before_ = &session_->scene();
     furnishing_ = true;
   } catch (const io::InputError& error) {
     session_->viewer().show_message(say(window_words::k_refused, error.what()));
@@ -84,7 +85,7 @@ void Shell::furnish_new_room() {
   if (session_) session_->player().pause();
   const io::Scene scene = io::parse_scene(new_room(), k_room_file);
   room_ = std::make_unique<FurnishView>(stage_, scene, k_room_file);
-  shaken_ = nullptr;
+  before_ = shaken_ = nullptr;
   furnishing_ = true;
 }
 

@@ -192,6 +192,30 @@ TEST_F(FurnishTest, a_room_is_shaken_and_the_run_before_it_stays_as_a_ghost) {
   EXPECT_EQ(room().text(), new_room()) << "undo reaches behind the run";
 }
 
+TEST_F(FurnishTest, a_new_room_has_no_run_before_it) {
+  const auto shake = [&] {
+    press(' ');
+    ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+    run_to(0.1);
+  };
+  shell_->open(write("rocking.toml", k_rocking));
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  run_to(0.1);
+  shell_->furnish_new_room();
+  frames(30);
+  shake();
+  EXPECT_FALSE(shell_->session()->viewer().shows_earlier());
+  press(render::key::f2);
+  place("desk", {0.6, -0.4});
+  shake();
+  EXPECT_TRUE(shell_->session()->viewer().shows_earlier());
+  press(render::key::f2);
+  view().begin_new_room();
+  frames(2);
+  shake();
+  EXPECT_FALSE(shell_->session()->viewer().shows_earlier());
+}
+
 TEST_F(FurnishTest, a_room_that_is_in_no_file_comes_back_from_a_demo_with_its_run) {
   place("desk", {0.6, -0.4});
   press(' ');

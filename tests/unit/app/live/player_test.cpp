@@ -308,6 +308,10 @@ TEST_F(PlayerTest, restart_keeps_the_sliders_and_is_a_branch_from_the_start) {
   ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && player().can_edit(); }));
   EXPECT_EQ(player().time(), 0);
   EXPECT_NEAR(player().parameters().shakes[0].amplitude, 450 * k_gal, 1e-12);
+  // the branch began with it, the scene did not
+  const std::vector<Edit> edits = player().edits_from(player().scene().setup.parameters);
+  ASSERT_EQ(edits.size(), 1u);
+  EXPECT_EQ(edits[0].key, Edit::Key::amplitude);
   run_to(0.3);
   EXPECT_NEAR(player().parameters().shakes[0].amplitude, 450 * k_gal, 1e-12);
   const RowPtr row = row_at_step(125);
