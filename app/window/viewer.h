@@ -140,6 +140,7 @@ class Viewer {
   void resize(int direction);
   void let_go();
   void focus_next_panel();
+  void go_on_from_here();
   void next_colour();
   void next_bodies();
   void turn(bool& on);

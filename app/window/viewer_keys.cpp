@@ -37,15 +37,7 @@ std::span<const Viewer::KeyAction> Viewer::key_actions() {
       {{"End", "End"}, k_key_end, render::key::end, false, false, [](Viewer& v) { v.player_.to_end(); }},
       {{"R", "R"}, k_key_restart, 'R', false, false, [](Viewer& v) { v.player_.restart(); }},
       {{"L", "L"}, k_key_loop, 'L', false, false, [](Viewer& v) { v.player_.set_loop(!v.player_.loop()); }},
-      {{"C", "C"},
-       k_key_continue,
-       'C',
-       false,
-       false,
-       [](Viewer& v) {
-         if (v.player_.at_head()) v.message_ = say(k_at_newest);
-         v.player_.continue_from_here();
-       }},
+      {{"C", "C"}, k_key_continue, 'C', false, false, [](Viewer& v) { v.go_on_from_here(); }},
       {{"Ctrl+Z", "Ctrl+Z"}, k_key_undo, 'Z', true, false, [](Viewer& v) { v.player_.undo(); }},
       {{"Ctrl+Shift+Z", "Ctrl+Shift+Z"}, k_key_redo, 'Z', true, true, [](Viewer& v) { v.player_.redo(); }},
       {k_ctrl_click, k_key_type},
@@ -132,6 +124,11 @@ void Viewer::toggle_following() {
   const std::size_t body = body_of(model, inspection_.picked.value_or(Subject{Subject::Kind::body, 0}));
   follow(body);
   message_ = say(k_follows, model.bodies[body].name);
+}
+
+void Viewer::go_on_from_here() {
+  if (player_.at_head()) message_ = say(k_at_newest);
+  player_.continue_from_here();
 }
 
 void Viewer::next_colour() {
