@@ -78,9 +78,9 @@ std::string integrators(const ordered_json& s) {
        {ModelLevel::frame, ModelLevel::elastic, ModelLevel::rigid, ModelLevel::planar}) {
     if (!levels.contains(level)) continue;
     const auto* const own = std::ranges::find(model_words::k_moved_by, level, &model_words::MovedBy::kind);
-    std::string words = own == std::end(model_words::k_moved_by) ? s["integrator"].get<std::string>()
-                                                                 : std::string(own->words.english);
-    if (levels.size() > 1 && own == std::end(model_words::k_moved_by)) words += " (frames)";
+    const bool of_scene = own == std::end(model_words::k_moved_by);
+    std::string words = of_scene ? s["integrator"].get<std::string>() : std::string(own->words.english);
+    if (of_scene && levels.size() > 1) words += " (frames)";
     if (level == ModelLevel::planar) words += " (planar)";
     all.push_back(std::move(words));
   }

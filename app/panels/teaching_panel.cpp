@@ -74,7 +74,7 @@ void draw_accuracy(const Player& player, TeachingState& state) {
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(k_how_accurate_about).c_str());
     if (asked) {
       Setup setup = player.scene().setup;
-      for (const Edit& edit : player.edits_from(Parameters(setup.parameters)))
+      for (const Edit& edit : player.edits_from(setup.parameters))
         apply(edit, setup.model, 0, setup.parameters);
       state.accuracy = estimate_accuracy(setup);
       return;
