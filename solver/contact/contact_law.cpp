@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "solver/contact/coulomb.h"
 #include "solver/contact/penalty.h"
@@ -217,14 +216,6 @@ Parameters at_rest(Parameters parameters) {
   parameters.shakes.clear();
   parameters.pulls.clear();
   parameters.contact = law_at_rest(parameters.contact);
-  return parameters;
-}
-
-Parameters at_rest_without_slip(Parameters parameters) {
-  constexpr double k_holds = 10;
-  parameters = at_rest(std::move(parameters));
-  parameters.contact.friction *= k_holds;
-  parameters.contact.friction_static *= k_holds;
   return parameters;
 }
 

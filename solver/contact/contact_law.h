@@ -119,9 +119,6 @@ inline const ContactLawTraits& traits(const ContactLaw& law) {
 ContactLaw law_at_rest(ContactLaw law);
 /// `parameters` with that law and without shakes.
 Parameters at_rest(Parameters parameters);
-/// The same with ten times the friction: on its way to rest a body may meet walls with forces that it will
-/// not have there, and is not to slide by them.
-Parameters at_rest_without_slip(Parameters parameters);
 
 /// A contact law with what is the same at all contacts.
 struct PreparedLaw : ContactLaw {

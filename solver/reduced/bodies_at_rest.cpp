@@ -21,6 +21,15 @@ Parameters without_ramp(Parameters parameters) {
   return parameters;
 }
 
+// On its way to rest a body may meet walls with forces that it will not have there, and is not to slide by
+// them.
+Parameters with_more_friction(Parameters parameters) {
+  constexpr double k_more = 10;
+  parameters.contact.friction *= k_more;
+  parameters.contact.friction_static *= k_more;
+  return parameters;
+}
+
 }  // namespace
 
 // Of find_rest, on the normal forces of Eq. 2 with stick springs. Unknowns of a body stand in groups of six:
@@ -33,8 +42,8 @@ class RestOfBodies {
         balanced(0),
         bodies_(bodies),
         coupling_(coupling),
-        limited_(without_ramp(at_rest(parameters))),
-        still_(without_ramp(at_rest_without_slip(parameters))),
+        with_own_friction_(without_ramp(at_rest(parameters))),
+        still_(with_more_friction(with_own_friction_)),
         now_(still_, 0),
         state_(state),
         buffers_(bodies.size()),
@@ -106,9 +115,9 @@ class RestOfBodies {
 
   // A balance that tips over by itself: Newton finds it as readily as a stable one.
   Balance look() {
-    if (slips_not_) {
-      slips_not_ = false;
-      still_ = limited_;
+    if (more_friction_) {
+      more_friction_ = false;
+      still_ = with_own_friction_;
       now_ = StepInputs(still_, 0);
       if (!(unbalance() < balanced)) return Balance::not_final;
     }
@@ -271,10 +280,10 @@ class RestOfBodies {
 
   std::span<const ModelBody> bodies_;
   MemberCoupling* const coupling_;
-  const Parameters limited_;  // with the friction that there is
+  const Parameters with_own_friction_;
   Parameters still_;
   StepInputs now_;
-  bool slips_not_ = true;
+  bool more_friction_ = true;
   State& state_;
   std::vector<std::vector<BodyContacts::TouchBuffer>> buffers_;  // per body, as all here but parts_
   std::deque<BodyContacts::ScratchLease> leases_;
