@@ -10,6 +10,7 @@
 
 #include "app/batch/load_steps.h"
 #include "app/batch/run_warnings.h"
+#include "app/batch/scene_warnings.h"
 #include "app/batch/ways_summary.h"
 #include "app/support/integrators.h"
 #include "app/support/terms.h"
@@ -255,6 +256,8 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["static"] = load_steps_json(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = run_warnings(run);
+  if (const std::string soft = soft_contact_warning(run.setup()); !soft.empty() && !is_static(run.setup()))
+    out["warnings"].push_back(soft);
   return out;
 }
 

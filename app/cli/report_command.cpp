@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "app/batch/recorded_run.h"
-#include "app/batch/scene_warnings.h"
 #include "app/cli/command.h"
 #include "app/page/export_page.h"
 #include "app/picture/replay.h"
@@ -241,8 +240,6 @@ int report_command(const ReportOptions& options) {
                 .trials = {},
                 .anchors = study::anchor_count(scene),
                 .without_anchors = {}};
-  if (const std::string soft = soft_contact_warning(scene.setup); !soft.empty())
-    report.summary["warnings"].push_back(soft);
   report.motion = study::floor_motion(scene.setup.parameters.shakes, report.summary["simulated_s"]);
   const io::Recording recording(temporary.path());
   const Replay replay(recording);

@@ -216,7 +216,10 @@ void FurnishView::draw_walls() {
     if (small_x(plane.name.c_str(), fw::k_remove_about)) removed = plane.name;
   }
   if (!removed.empty()) {
-    const auto held = [&] { return room_.scene().setup.model.anchors.size(); };
+    const auto held = [&] {
+      const Setup& setup = room_.scene().setup;
+      return setup.model.anchors.size() + setup.room.doors.size();
+    };
     const std::size_t before = held();
     if (change([removed](const io::Scene& scene) { return without_wall(scene, removed); }) && held() < before)
       show_message(say(fw::k_fixings_went, removed));

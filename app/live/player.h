@@ -88,6 +88,7 @@ class Player {
 
   // What is seen.
   const io::Scene& scene() const { return *scene_; }
+  std::span<const int> bearers() const { return bearers_; }  ///< bearers_of its model
   const LiveStatus& status() const { return status_; }
   /// The frame shown, interpolated between two recorded ones while a replay goes on; nothing before the
   /// first.
@@ -133,6 +134,7 @@ class Player {
   std::vector<RowPtr> rows_on_way_to(std::int32_t branch) const;
 
   const std::shared_ptr<const io::Scene> scene_;
+  const std::vector<int> bearers_;
   LiveRun& run_;
   const std::size_t most_bytes_;
   LiveStatus status_;

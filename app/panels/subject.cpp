@@ -78,9 +78,16 @@ double kinetic_value(const FrameContext& now, std::size_t index) {
   return io::kinetic_energy(now.model, now.gravity, now.row, static_cast<int>(index));
 }
 
+Burdened with_burden(const FrameContext& now, std::size_t index) {
+  std::vector<BodyPose> poses;
+  for (const io::BodyNumbers& body : now.row.body) poses.push_back({body.centre(), body.rotation()});
+  return burdened(now.model, now.bearers, poses)[index];
+}
+
 OverturnBarrier barrier(const FrameContext& now, std::size_t index) {
-  return overturn_barrier(now.model, static_cast<int>(index),
-                          {now.row.body[index].centre(), now.row.body[index].rotation()}, now.gravity.norm());
+  const io::BodyNumbers& body = now.row.body[index];
+  return overturn_barrier(now.model, static_cast<int>(index), {body.centre(), body.rotation()},
+                          with_burden(now, index), now.gravity.norm());
 }
 
 double margin_value(const FrameContext& now, std::size_t index) {
@@ -168,6 +175,8 @@ std::vector<std::string> about_body(const FrameContext& now, std::size_t index) 
   std::vector<std::string> lines{body.solid
                                      ? say(window_words::k_block_line, body.mass, level)
                                      : say(window_words::k_body_line, body.mass, body.member_count, level)};
+  if (const double mass = with_burden(now, index).mass; mass > body.mass)
+    lines.push_back(say(window_words::k_with_burden, mass));
   for (const BodyTouch& touch : touches(now.model, now.row, index))
     lines.push_back(say(window_words::k_touched_by, touch.by, value_text(touch.force.norm()),
                         value_text(touch.force.z()), touch.place.z()));
@@ -273,7 +282,8 @@ Subject subject_named(const Model& model, const std::string& name) {
 }
 
 FrameContext frame_context(const Player& player, const io::FrameRow& row) {
-  FrameContext now{player.scene().setup.model, player.scene().setup.parameters.gravity, row};
+  FrameContext now{player.scene().setup.model, player.scene().setup.parameters.gravity, player.bearers(),
+                   row};
   const std::vector<RowPtr>& way = player.way();
   const auto earlier = [](const RowPtr& r, double time) { return r->time < time; };
   const auto at = std::lower_bound(way.begin(), way.end(), row.time, earlier);
@@ -315,7 +325,10 @@ const std::vector<float>& Histories::of(const Player& player, const Subject& sub
   if (!samples.empty()) samples.pop_back();  // it has a neighbour now
   const SubjectValue& asked = values_of(subject.kind)[value];
   for (std::size_t i = samples.size(); i < way.size(); ++i) {
-    const FrameContext frame{player.scene().setup.model, player.scene().setup.parameters.gravity, *way[i],
+    const FrameContext frame{player.scene().setup.model,
+                             player.scene().setup.parameters.gravity,
+                             player.bearers(),
+                             *way[i],
                              i > 0 ? way[i - 1].get() : nullptr,
                              i + 1 < way.size() ? way[i + 1].get() : nullptr};
     samples.push_back(static_cast<float>(asked.at(frame, subject.index)));

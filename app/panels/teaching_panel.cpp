@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
@@ -30,6 +31,7 @@ void draw_presets(Player& player) {
 
 void draw_guide(TeachingState& state) {
   DemoGuide& guide = *state.guide;
+  if (!guide.step()) ImGui::SetScrollY(0);  // it has just begun
   ImGui::TextWrapped(
       "%s", say(k_demo_step, say(guide.demo().name), guide.step().value_or(0) + 1, guide.demo().steps.size())
                 .c_str());
@@ -51,9 +53,7 @@ void draw_guide(TeachingState& state) {
 void draw_demos(const Player& player, TeachingState& state) {
   ImGui::TextDisabled("%s", say(k_demos).c_str());
   state.wanted.reset();
-  if (state.guide)
-    draw_guide(state);
-  else
+  if (!state.guide)
     for (std::size_t k = 0; k < demos().size(); ++k)
       if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0}))
         state.wanted = k;
@@ -77,6 +77,7 @@ void draw_accuracy(const Player& player, TeachingState& state) {
       for (const Edit& edit : player.edits_from(setup.parameters))
         apply(edit, setup.model, 0, setup.parameters);
       state.accuracy = estimate_accuracy(setup);
+      state.in_sight = false;
       return;
     }
   } else {
@@ -89,11 +90,16 @@ void draw_accuracy(const Player& player, TeachingState& state) {
   for (const std::string& line : accuracy_in_words(player.scene().setup.model, *result))
     ImGui::TextWrapped("%s", line.c_str());
   if (result->failure.empty()) ImGui::TextWrapped("%s", say(k_estimate_note).c_str());
+  if (!std::exchange(state.in_sight, true)) ImGui::SetScrollHereY(1);
 }
 
 }  // namespace
 
 void draw_teaching(Player& player, TeachingState& state, std::string& refused) {
+  if (state.guide) {  // above all that changes its height
+    draw_guide(state);
+    ImGui::Separator();
+  }
   draw_excitation(player, state, refused);
   draw_presets(player);
   ImGui::Separator();

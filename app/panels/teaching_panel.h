@@ -26,6 +26,7 @@ struct TeachingState {
   std::string came_from;              ///< what a demo's scene was opened instead of; empty: nothing
   bool back = false;                  ///< to that: asked for in the last frame
   std::unique_ptr<Accuracy> accuracy;
+  bool in_sight = false;  ///< its result has been scrolled to
   MapState map;
 };
 

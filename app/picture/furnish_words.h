@@ -115,8 +115,9 @@ inline constexpr Phrase k_add_door{"Door", "扉"};
 inline constexpr Phrase k_add_person{"Person", "人"};
 inline constexpr Phrase k_door_width{"{0}, mm wide", "{0}の幅 [mm]"};
 inline constexpr Phrase k_person_line{"{0}: x {1:.2f} m, y {2:.2f} m", "{0}：x {1:.2f} m、y {2:.2f} m"};
-inline constexpr Phrase k_fixings_went{"What was fixed to {0} is not fixed any more; Ctrl+Z brings it back.",
-                                       "{0}に固定していた家具の固定も外れました。Ctrl+Z で元に戻ります。"};
+inline constexpr Phrase k_fixings_went{
+    "What was fixed to {0} is not fixed any more, and doors in it are gone; Ctrl+Z brings them back.",
+    "{0}に固定していた家具の固定も、{0}のドアもなくなりました。Ctrl+Z で元に戻ります。"};
 inline constexpr Phrase k_remove_about{"Takes it away", "取り除く"};
 
 // the picture of a run
@@ -153,7 +154,8 @@ inline constexpr Phrase k_key_drag{"drag a piece: move it; the room: turn the vi
 inline constexpr Phrase k_key_let_go_room{"let go", "選択・操作の解除"};
 
 // kinds of furniture, by their names in scenes
-inline constexpr Phrase k_kinds[] = {{"bookshelf", "本棚"},
+inline constexpr Phrase k_kinds[] = {{"bed", "ベッド"},
+                                     {"bookshelf", "本棚"},
                                      {"cabinet", "書庫"},
                                      {"chair", "椅子"},
                                      {"chest", "たんす"},

@@ -28,7 +28,7 @@ constexpr double k_board = 0.020, k_seam = 0.006, k_relief = 0.003;  // m
 
 /// What is seen of a kind.
 struct KindLook {
-  enum class Front { doors, shelves, books, screen, keys, porthole };
+  enum class Front { doors, shelves, books, screen, keys, porthole, mattress };
   std::string_view kind;
   Float4 colour;
   Front front;
@@ -36,7 +36,8 @@ struct KindLook {
   bool handles;
 };
 /// A kind that is not here is drawn as its beams.
-constexpr KindLook k_kind_looks[] = {{"bookshelf", k_oak, KindLook::Front::books, 5, 1, false},
+constexpr KindLook k_kind_looks[] = {{"bed", k_oak, KindLook::Front::mattress, 1, 1, false},
+                                     {"bookshelf", k_oak, KindLook::Front::books, 5, 1, false},
                                      {"cabinet", k_grey, KindLook::Front::doors, 1, 2, true},
                                      {"chest", k_walnut, KindLook::Front::doors, 4, 1, true},
                                      {"cupboard", k_beech, KindLook::Front::doors, 2, 2, true},
@@ -87,6 +88,9 @@ class Joinery {
         break;
       case KindLook::Front::porthole:
         porthole();
+        break;
+      case KindLook::Front::mattress:
+        mattress();
         break;
     }
   }
@@ -177,6 +181,17 @@ class Joinery {
     pieces.push_back({at, Vec3(0.012, r, r), k_metal, true});
     pieces.push_back({at, Vec3(0.016, 0.8 * r, 0.8 * r), k_glass, true});
     on_front(-0.42 * size_.y(), 0.42 * size_.y(), 0.88 * size_.z(), 0.95 * size_.z(), k_relief, k_grey);
+  }
+
+  void mattress() {
+    const double d = size_.x(), w = size_.y(), h = size_.z();
+    box(Vec3(0, 0, 0.45 * h), Vec3(d / 2, w / 2, 0.1 * h), look_.colour);
+    for (const double x : {-0.47, 0.47})
+      for (const double y : {-0.44, 0.44})
+        box(Vec3(x * d, y * w, 0.2 * h), Vec3(0.03 * d, 0.06 * w, 0.2 * h), look_.colour);
+    box(Vec3(0, 0, 0.72 * h), Vec3(0.49 * d, 0.48 * w, 0.17 * h), k_white);
+    box(Vec3(-0.38 * d, 0, 0.94 * h), Vec3(0.09 * d, 0.32 * w, 0.06 * h), k_white);
+    box(Vec3(0.13 * d, 0, 0.74 * h), Vec3(0.365 * d, 0.49 * w, 0.17 * h), k_blue);
   }
 
   const KindLook& look_;

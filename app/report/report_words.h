@@ -126,14 +126,16 @@ inline constexpr Phrase k_critical{"critical angle, °", "転倒限界角 [°]"}
 inline constexpr Phrase k_slide{"peak slide, mm", "最大すべり [mm]"};
 inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
 inline constexpr Phrase k_table_note{
-    "Overturns: the tilt passes the critical angle (centre of gravity above the edge of the base) for good "
+    "Overturns: the tilt passes the critical angle (centre of gravity, with what stands on the body, above "
+    "the edge of the base) for good "
     "before the run ends; its column tells that of the edge over which the body leaned most. "
     "Slide: travel of the middle of the base along the floor or the piece that it stands on. Uplift: one "
     "side of the base "
     "carries less than "
     "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated numerical error, "
     "section {2}.",
-    "転倒：傾斜角が転倒限界角（重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らないこと。限界角は最も"
+    "転倒：傾斜角が転倒限界角（載っている物を含めた重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らな"
+    "いこと。限界角は最も"
     "傾いた側の値。すべり："
     "床または載っている家具に対する底面中心の移動量。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"

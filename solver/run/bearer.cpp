@@ -56,4 +56,11 @@ int bearer_of(const Model& model, std::span<const Vec3> position, int index) {
   return bears ? under.body : -1;
 }
 
+std::vector<int> bearers_of(const Model& model) {
+  std::vector<int> bearers;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
+    bearers.push_back(bearer_of(model, model.node_position, b));
+  return bearers;
+}
+
 }  // namespace topple

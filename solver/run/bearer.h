@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "solver/model/model.h"
 
@@ -30,5 +31,7 @@ Below below(const Model& model, std::span<const Vec3> position, int body, bool f
 /// The piece of furniture on which a body stands: below it in plan, with its top between k_hangs under the
 /// bottom of the body and k_top_of over that. -1: none.
 int bearer_of(const Model& model, std::span<const Vec3> position, int body);
+/// The same of every body, in the reference pose.
+std::vector<int> bearers_of(const Model& model);
 
 }  // namespace topple

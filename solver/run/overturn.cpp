@@ -33,6 +33,15 @@ double distance_to_edge(const std::vector<Vec3>& polygon, const Vec3& p, const V
   return nearest;
 }
 
+/// p: above the polygon, or on its boundary, in plan.
+bool is_above(const std::vector<Vec3>& polygon, const Vec3& p) {
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vec3 edge = polygon[(i + 1) % polygon.size()] - polygon[i];
+    if (Vec3(edge.y(), -edge.x(), 0).dot(p - polygon[i]) > 0) return false;
+  }
+  return true;
+}
+
 bool is_floor(const Plane& plane) {
   return plane.normal.z() > k_upright_normal;
 }
@@ -56,38 +65,57 @@ bool is_base_supported(const Model& model, int index) {
 struct EdgeAhead {
   double distance, height, nearest;
 };
-std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPose& pose) {
+std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPose& pose, const Vec3& centre) {
   const Body& body = model.bodies[index];
   if (body.support_polygon.empty() || !has_floor(model) || is_base_supported(model, index))
     return std::nullopt;
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
-  const double height = body.centre_of_gravity.z() - body.support_polygon.front().z();
+  const double height = centre.z() - body.support_polygon.front().z();
   const double lean = up.head<2>().norm();
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
     const Vec3 edge = body.support_polygon[(i + 1) % body.support_polygon.size()] - body.support_polygon[i];
     const Vec3 outward = Vec3(edge.y(), -edge.x(), 0).normalized();
-    nearest = std::min(nearest, outward.dot(body.support_polygon[i] - body.centre_of_gravity));
+    nearest = std::min(nearest, outward.dot(body.support_polygon[i] - centre));
   }
   if (lean <= k_uplift_angle) return EdgeAhead{nearest, height, nearest};
   const Vec3 downhill = Vec3(-up.x(), -up.y(), 0) / lean;
-  return EdgeAhead{distance_to_edge(body.support_polygon, body.centre_of_gravity, downhill), height, nearest};
+  return EdgeAhead{distance_to_edge(body.support_polygon, centre, downhill), height, nearest};
 }
 
 }  // namespace
 
-double critical_angle(const Model& model, int index, const BodyPose& pose) {
-  const auto edge = edge_ahead(model, index, pose);
+std::vector<Burdened> burdened(const Model& model, std::span<const int> bearers,
+                               std::span<const BodyPose> poses) {
+  std::vector<Burdened> all;
+  for (std::size_t b = 0; b < poses.size(); ++b)
+    all.push_back({model.bodies[b].mass, model.bodies[b].centre_of_gravity});
+  for (std::size_t b = 0; b < poses.size(); ++b)
+    for (int under = bearers[b]; under >= 0; under = bearers[under]) {
+      const Body& body = model.bodies[under];
+      const Vec3 centre = poses[under].rotation.conjugate() * (poses[b].centre - poses[under].centre) +
+                          body.centre_of_gravity;
+      if (!is_above(body.support_polygon, centre)) continue;
+      Burdened& on = all[under];
+      on.mass += model.bodies[b].mass;
+      on.centre_of_gravity += model.bodies[b].mass / on.mass * (centre - on.centre_of_gravity);
+    }
+  return all;
+}
+
+double critical_angle(const Model& model, int index, const BodyPose& pose, const Burdened& all) {
+  const auto edge = edge_ahead(model, index, pose, all.centre_of_gravity);
   return edge ? elementary::atan2(edge->distance, edge->height) : std::numeric_limits<double>::infinity();
 }
 
-OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& pose, double gravity) {
-  const auto edge = edge_ahead(model, index, pose);
+OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& pose, const Burdened& all,
+                                 double gravity) {
+  const auto edge = edge_ahead(model, index, pose, all.centre_of_gravity);
   constexpr double k_never = std::numeric_limits<double>::infinity();
   if (!edge) return {k_never, k_never};
   const auto barrier = [&](double distance, double angle) {
     const double critical = elementary::atan2(distance, edge->height);
-    return model.bodies[index].mass * gravity * elementary::hypot(distance, edge->height) *
+    return all.mass * gravity * elementary::hypot(distance, edge->height) *
            (1 - elementary::cos(critical - std::min(angle, critical)));
   };
   const double upright = barrier(edge->nearest, 0);
@@ -101,12 +129,13 @@ double slide(const Model& model, int index, const BodyPose& pose, int bearer, co
   return (now - body.base_centre).head<2>().norm();
 }
 
-BodyPose bearer_pose(const Model& model, const State& state, int bearer) {
-  return bearer < 0 ? BodyPose{Vec3::Zero(), Quat::Identity()} : body_pose(model, state, bearer);
+BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer) {
+  return bearer < 0 ? BodyPose{Vec3::Zero(), Quat::Identity()} : poses[bearer];
 }
 
 Outcome::Outcome(const Model& model)
     : anchors_(model.anchors.size()),
+      bearers_(bearers_of(model)),
       broke_(model.elements.size()),
       flowed_(model.node_position.size()),
       furniture_(model.furniture_total()) {
@@ -118,8 +147,6 @@ Outcome::Outcome(const Model& model)
     unit_stress_.emplace_back(of(Vec3::UnitX(), zero), of(zero, Vec3::UnitX()), of(zero, Vec3::UnitY()),
                               of(zero, Vec3::UnitZ()));
   }
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    bearers_.push_back(bearer_of(model, model.node_position, b));
   for (const Body& body : model.bodies) {
     const std::size_t sides = body.support_polygon.size();
     BodyOutcome outcome;
@@ -224,14 +251,14 @@ void Outcome::observe_level(const Parameters& parameters, const State& state, st
   }
 }
 
-void Outcome::observe_pose(const Model& model, const State& state, std::size_t b,
-                           std::vector<Event>& events) {
+void Outcome::observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
+                           const Burdened& all, std::size_t b, std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
   const int body = static_cast<int>(b);
-  const BodyPose pose = body_pose(model, state, body);
+  const BodyPose& pose = poses[b];
   const double before = o.tilt - o.critical, time_before = o.time;
   o.time = state.time;
-  const BodyPose on = bearer_pose(model, state, bearers_[b]);
+  const BodyPose on = bearer_pose(poses, bearers_[b]);
   o.vertical = pose.rotation.conjugate() * (on.rotation * Vec3::UnitZ());
   o.tilt = tilt(pose);
   o.peak_tilt = std::max(o.peak_tilt, o.tilt);
@@ -240,7 +267,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
   o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
   o.slide = topple::slide(model, body, pose, bearers_[b], on);
   o.peak_slide = std::max(o.peak_slide, o.slide);
-  o.critical = critical_angle(model, body, pose);
+  o.critical = critical_angle(model, body, pose, all);
   if (o.tilt == o.peak_tilt) o.critical_of_peak = o.critical;
   const double beyond = o.tilt - o.critical;
   if (beyond > 0 && !o.beyond_since) {
@@ -262,7 +289,8 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
     o.over_60_since = state.time;
 }
 
-// What lifts off and lands. An uplift is told once it counts, with the time at which the side let go.
+// What lifts off and lands, until the body overturns: then the base is no longer what it lies on. An uplift is
+// told once it counts, with the time at which the side let go.
 void Outcome::observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
   for (std::size_t i = 0; i < o.sides.size(); ++i) {
@@ -279,14 +307,14 @@ void Outcome::observe_sides(const State& state, double weight, std::size_t b, st
         total_force_[b] > k_closing * weight)
       side = {.open = true, .counts = false, .since = state.time, .vertical = o.vertical};
     if (!side.open) continue;
-    if (!side.counts && (o.vertical - side.vertical).norm() > k_uplift_angle) {
+    if (!side.counts && !o.beyond_since && (o.vertical - side.vertical).norm() > k_uplift_angle) {
       side.counts = true;
       if (!o.first_uplift) o.first_uplift = side.since;
       add(Event::Kind::uplift, side.since);
     }
     if (!(carried > k_closing * weight)) continue;
     side.open = false;
-    if (!side.counts) continue;
+    if (!side.counts || o.beyond_since) continue;
     ++o.impacts;
     if (!o.first_impact) o.first_impact = state.time;
     if (o.impact_times.size() < k_kept_impacts) {
@@ -301,10 +329,12 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
                       const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
                       const std::vector<SectionForces>& sections, std::vector<Event>& events) {
   observe_forces(model, forces, between);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (model.bodies[b].ground) continue;
+  std::vector<BodyPose> poses;
+  for (int b = 0; b < furniture_; ++b) poses.push_back(body_pose(model, state, b));
+  const std::vector<Burdened> all = burdened(model, bearers_, poses);
+  for (std::size_t b = 0; b < poses.size(); ++b) {
     observe_level(parameters, state, b, events);
-    observe_pose(model, state, b, events);
+    observe_pose(model, state, poses, all[b], b, events);
     observe_sides(state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }
   observe_sections(model, state, sections, events);

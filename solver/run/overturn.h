@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,20 +29,31 @@ inline constexpr double k_uplift_angle = 0.05 * k_pi / 180;
 /// Impacts of a body of which time and the peak that follows are kept.
 inline constexpr std::size_t k_kept_impacts = 100;
 
+/// A body and what it bears.
+struct Burdened {
+  double mass;             ///< kg, of all
+  Vec3 centre_of_gravity;  ///< m, of all, in the reference axes of the body
+};
+/// Of each of `poses`, those of the first bodies, now. Every piece counts that stood on the body at the
+/// start, or on such a piece, while its centre of gravity is above the base of the body. bearers: bearers_of.
+std::vector<Burdened> burdened(const Model& model, std::span<const int> bearers,
+                               std::span<const BodyPose> poses);
+
 /// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
 /// below k_uplift_angle above the nearest, rad: atan(distance/height). Infinite without a floor, and for a
 /// body without a base or with supports there.
-double critical_angle(const Model& model, int body, const BodyPose& pose);
+double critical_angle(const Model& model, int body, const BodyPose& pose, const Burdened& all);
 
-/// Energy that lifts the centre of gravity of a rigid body over an edge, J; both infinite where
-/// critical_angle is.
+/// Energy that lifts the centre of gravity of a rigid body, and of what it bears, over an edge, J; both
+/// infinite where critical_angle is.
 ///   m g R (1 - cos(critical - tilt)),  R from the edge to the centre of gravity; 0 beyond the critical angle
 struct OverturnBarrier {
   double left;   ///< over the edge ahead from this tilt on, or over the nearest from upright, if that is less
   double whole;  ///< from upright, over the nearest edge
 };
 /// gravity: m/s^2.
-OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, double gravity);
+OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, const Burdened& all,
+                                 double gravity);
 
 /// Travel of the mid-point of the base along what bears the body since the reference pose, m: along the
 /// floor, or along the piece that it stands on there (bearer.h), in the axes of that, where `on` is its pose
@@ -49,7 +61,7 @@ OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& p
 double slide(const Model& model, int body, const BodyPose& pose, int bearer, const BodyPose& on);
 
 /// Of what bears a body; bearer -1: of the floor.
-BodyPose bearer_pose(const Model& model, const State& state, int bearer);
+BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer);
 
 /// Something that happened to a body, at the end of a step.
 struct Event {
@@ -148,7 +160,8 @@ class Outcome {
   /// Of body b.
   void observe_level(const Parameters& parameters, const State& state, std::size_t b,
                      std::vector<Event>& events);
-  void observe_pose(const Model& model, const State& state, std::size_t b, std::vector<Event>& events);
+  void observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
+                    const Burdened& all, std::size_t b, std::vector<Event>& events);
   void observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events);
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
                         std::vector<Event>& events);

@@ -126,11 +126,15 @@ void fill_contacts_between(const Snapshot& at, FrameRow& row) {
 
 void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
   const Model& model = run.setup().model;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+  const std::vector<int>& bearers = run.outcome().bearers();
+  std::vector<BodyPose> poses;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    poses.push_back(body_pose(model, at.state, static_cast<int>(b)));
+  const std::vector<Burdened> all = burdened(model, bearers, poses);
+  for (std::size_t b = 0; b < poses.size(); ++b) {
     const int index = static_cast<int>(b);
-    const BodyPose pose = body_pose(model, at.state, index);
-    const double critical = critical_angle(model, index, pose);
-    const int bearer = run.outcome().bearers()[b];
+    const BodyPose& pose = poses[b];
+    const double critical = critical_angle(model, index, pose, all[b]);
     const Vec3& x = pose.centre;
     const Quat& q = pose.rotation;
     row.body[b] = {.x = x.x(),
@@ -141,7 +145,7 @@ void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
                    .qy = q.y(),
                    .qz = q.z(),
                    .tilt = tilt(pose),
-                   .slide = slide(model, index, pose, bearer, bearer_pose(model, at.state, bearer)),
+                   .slide = slide(model, index, pose, bearers[b], bearer_pose(poses, bearers[b])),
                    .energy = body_energy(run, at, model.bodies[b]),
                    .critical_angle = std::isfinite(critical) ? critical : 0};
     row.level[b] = static_cast<std::uint8_t>(at.state.bodies[b].level);

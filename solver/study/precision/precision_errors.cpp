@@ -6,6 +6,7 @@
 
 #include "solver/body/body_pose.h"
 #include "solver/math/rotation.h"
+#include "solver/run/bearer.h"
 #include "solver/run/overturn.h"
 #include "solver/study/precision/convergence.h"
 #include "solver/study/precision/precision.h"
@@ -45,8 +46,9 @@ Course course_of(const std::string& row) {
   return course;
 }
 
-/// Least critical angle of a body over the edges of its base, rad; none: it has none.
-std::optional<double> least_critical(const Model& model, int b) {
+/// Least critical angle of a body, with what it bears at the start, over the edges of its base, rad; none: it
+/// has none.
+std::optional<double> least_critical(const Model& model, int b, const Burdened& all) {
   constexpr double k_little = 1e-3;  // rad
   double least = std::numeric_limits<double>::infinity();
   const std::vector<Vec3>& polygon = model.bodies[static_cast<std::size_t>(b)].support_polygon;
@@ -54,7 +56,7 @@ std::optional<double> least_critical(const Model& model, int b) {
     const Vec3 edge = (polygon[(i + 1) % polygon.size()] - polygon[i]).normalized();
     const BodyPose lean{model.bodies[static_cast<std::size_t>(b)].centre_of_gravity,
                         exp_quaternion(k_little * edge)};
-    least = std::min(least, critical_angle(model, b, lean));
+    least = std::min(least, critical_angle(model, b, lean, all));
   }
   return std::isfinite(least) ? std::optional(least) : std::nullopt;
 }
@@ -68,10 +70,13 @@ class Comparison {
     if (reference_.run < 0) return;
     const Model& model = plan.scene.setup.model;
     const Course& run = course(reference_.run);
+    std::vector<BodyPose> poses;
+    for (const Body& body : model.bodies) poses.push_back({body.centre_of_gravity, Quat::Identity()});
+    const std::vector<Burdened> at_start = burdened(model, bearers_of(model), poses);
     for (int b = 0; b < model.furniture_total(); ++b) {
       const std::vector<double>& tilt = run.tilt[static_cast<std::size_t>(b)];
       const double peak = tilt.empty() ? 0 : *std::ranges::max_element(tilt);
-      scale_.push_back(least_critical(model, b).value_or(peak > 0 ? peak : 1));
+      scale_.push_back(least_critical(model, b, at_start[b]).value_or(peak > 0 ? peak : 1));
     }
     find_window();
     if (reference_.run < 0) return;

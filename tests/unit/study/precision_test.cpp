@@ -33,7 +33,8 @@ int case_of(const PrecisionPlan& plan, Method method, int from_finest) {
 double critical(const PrecisionPlan& plan) {
   const Body& body = plan.scene.setup.model.bodies[0];
   return critical_angle(plan.scene.setup.model, 0,
-                        {body.centre_of_gravity, Quat(Eigen::AngleAxisd(1e-3, Vec3::UnitY()))});
+                        {body.centre_of_gravity, Quat(Eigen::AngleAxisd(1e-3, Vec3::UnitY()))},
+                        {body.mass, body.centre_of_gravity});
 }
 
 /// A row of one body as run_case writes them.

@@ -174,10 +174,13 @@ TEST_F(BadSceneTest, a_room_that_bends_too_much_for_rigid_bodies_is_warned_of) {
 
 // The cabinets withstand 94.9 of 177.5 gal (as in CriteriaTest), which is what the window says too.
 TEST_F(BadSceneTest, soft_contacts_are_said_to_tip_as_early_as_they_do) {
-  const Ended ended = topple({"check", "paper-a"});
-  EXPECT_EQ(ended.code, 0);
-  EXPECT_NE(ended.err.find("at up to 47 % less acceleration than on a rigid floor"), std::string::npos)
-      << ended.err;
+  for (const auto& words : std::vector<std::vector<std::string>>{
+           {"check", "paper-a"}, {"run", "paper-a", "--set", "run.duration=\"0.1 s\""}}) {
+    const Ended ended = topple(words);
+    EXPECT_EQ(ended.code, 0);
+    EXPECT_NE(ended.err.find("at up to 47 % less acceleration than on a rigid floor"), std::string::npos)
+        << words[0] << ": " << ended.err;
+  }
 }
 
 TEST_F(BadSceneTest, the_built_in_scenes_are_good_and_listed) {

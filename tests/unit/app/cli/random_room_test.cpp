@@ -113,7 +113,9 @@ Track track(const topple::Setup& setup) {
     for (int b = 0; b < furniture; ++b) {
       const BodyPose pose = body_pose(setup.model, at.state, b);
       out.tilt.back().push_back(tilt(pose));
-      out.critical.back().push_back(critical_angle(setup.model, b, pose));
+      const Body& body = setup.model.bodies[static_cast<std::size_t>(b)];
+      out.critical.back().push_back(
+          critical_angle(setup.model, b, pose, {body.mass, body.centre_of_gravity}));
     }
   };
   note(run.snapshot());

@@ -280,9 +280,11 @@ TEST_F(FurnishTest, an_export_beside_it_takes_no_clicks) {
   EXPECT_EQ(view().selected(), "chest");
 }
 
-TEST_F(FurnishTest, a_wall_that_goes_with_its_fixings_says_so) {
+TEST_F(FurnishTest, a_wall_that_goes_with_its_fixings_and_doors_says_so) {
   ASSERT_TRUE(view().change([](const io::Scene& scene) {
-    return scene.text + "\n[[fixing]]\nkind = \"L-bracket\"\nbody = \"bookshelf\"\nto = \"back\"\n";
+    return scene.text +
+           "\n[[fixing]]\nkind = \"L-bracket\"\nbody = \"bookshelf\"\nto = \"back\"\n"
+           "\n[[door]]\nwall = \"back\"\nat = 0\nwidth = \"800 mm\"\n";
   })) << room().refused();
   frames(2);
   const std::size_t held = room().scene().setup.model.anchors.size();
@@ -292,6 +294,7 @@ TEST_F(FurnishTest, a_wall_that_goes_with_its_fixings_says_so) {
   click("x##back", "side");
   frames(2);
   EXPECT_LT(room().scene().setup.model.anchors.size(), held);
+  EXPECT_TRUE(room().scene().setup.room.doors.empty());
   EXPECT_TRUE(view().message().starts_with("What was fixed to back")) << view().message();
 }
 

@@ -151,6 +151,32 @@ TEST(BlockMotion, falls_with_its_centre_beyond_the_edge_of_the_one_below) {
   }
 }
 
+// Two of one size that lean as one: about the edge of the lower one, by what both weigh.
+TEST(BlockMotion, pile_falls_from_beyond_the_critical_angle_of_all) {
+  constexpr double k_depth = 0.3, k_height = 0.5;
+  for (const double share : {0.96, 1.04}) {
+    std::vector<BlockSpec> specs(2, box(Vec3(k_depth, 0.4, k_height), 20));
+    specs[1].name = "upper";
+    specs[1].at.z() = k_height + contact_width_of(specs[1].size);
+    topple::Setup setup = on_floor(specs);
+    const double both = (k_height + contact_width_of(specs[1].size) + k_height) / 2;
+    const double critical = std::atan2(k_depth / 2, both);
+    for (BodyStart& start : setup.starts) {
+      start.pivot = setup.model.bodies[0].base_centre + Vec3(k_depth / 2, 0, 0);
+      start.rotation = share * critical * Vec3::UnitY();
+    }
+    setup.parameters.contact.friction = 1;
+    setup.run.settle = false;
+    setup.run.duration = 2;
+    topple::Run run(setup);
+    EXPECT_NEAR(run.outcome().bodies()[0].critical, critical, 1e-9);
+    while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(setup.model);
+    const BodyOutcome& lower = run.outcome().bodies()[0];
+    EXPECT_EQ(lower.beyond_since.has_value(), share > 1);
+    EXPECT_EQ(lower.tilt > 1, share > 1) << lower.tilt;
+  }
+}
+
 // The floor moves from under it: (a - mu g) t^2/2, but for the time in which the springs of friction fill,
 // which goes as 1/sqrt(alpha): 2e-4 of the way here.
 TEST(BlockMotion, slides_by_coulombs_law_on_a_floor_that_is_pushed) {

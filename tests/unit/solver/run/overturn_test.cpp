@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "solver/model/block.h"
+#include "solver/run/bearer.h"
 #include "solver/state/sections.h"
 #include "unit/solver/fixtures.h"
 
@@ -77,11 +78,23 @@ TEST(Overturn, tilt_is_the_angle_of_the_vertical_axis_whatever_the_yaw) {
   }
 }
 
+Burdened alone(const Model& model) {
+  return {model.bodies[0].mass, model.bodies[0].centre_of_gravity};
+}
+
+double critical_angle_alone(const Model& model, const BodyPose& pose) {
+  return critical_angle(model, 0, pose, alone(model));
+}
+
+OverturnBarrier barrier_alone(const Model& model, const BodyPose& pose) {
+  return overturn_barrier(model, 0, pose, alone(model), k_g);
+}
+
 TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
   const Standing s = standing();
   const auto critical = [&](double direction, double angle) {  // direction of the lean from +x towards +y
     const Vec3 axis(-std::sin(direction), std::cos(direction), 0);
-    return critical_angle(s.model, 0, turned(s.model, angle * axis));
+    return critical_angle_alone(s.model, turned(s.model, angle * axis));
   };
   const double hx = k_depth / 2, hy = k_breadth / 2, corner = std::atan2(hy, hx);
   for (double angle : {1e-3, 0.1, 0.5}) {
@@ -98,7 +111,7 @@ TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
     }
   }
   // upright, within what counts as that: the nearest edge
-  EXPECT_NEAR(critical_angle(s.model, 0, turned(s.model, Vec3::Zero())), k_edge_angle, 1e-9);
+  EXPECT_NEAR(critical_angle_alone(s.model, turned(s.model, Vec3::Zero())), k_edge_angle, 1e-9);
   EXPECT_NEAR(critical(k_pi / 2, 0.9 * k_uplift_angle), k_edge_angle, 1e-9);
 }
 
@@ -106,23 +119,22 @@ TEST(Overturn, critical_angle_is_that_of_the_edge_or_corner_ahead) {
 TEST(Overturn, barrier_is_the_weight_times_the_rise_to_above_the_edge) {
   const Standing s = standing();
   const Body& body = s.model.bodies[0];
-  constexpr double k_g = 9.81;
   const Vec3 edge(body.base_centre.x() + k_depth / 2, 0, body.base_centre.z());
   const auto height = [&](double angle) {
     return (exp_quaternion(angle * Vec3::UnitY()) * (body.centre_of_gravity - edge)).z();
   };
   for (const double angle : {1e-9, 0.02, 0.1, 0.9 * k_edge_angle}) {
-    const OverturnBarrier barrier = overturn_barrier(s.model, 0, turned(s.model, angle * Vec3::UnitY()), k_g);
+    const OverturnBarrier barrier = barrier_alone(s.model, turned(s.model, angle * Vec3::UnitY()));
     EXPECT_NEAR(barrier.left, body.mass * k_g * (height(k_edge_angle) - height(angle)), 1e-9) << angle;
     EXPECT_NEAR(barrier.whole, body.mass * k_g * (height(k_edge_angle) - height(0)), 1e-9) << angle;
   }
   // leaning to its wide side it falls over the narrow one as easily as upright
-  const OverturnBarrier upright = overturn_barrier(s.model, 0, turned(s.model, Vec3::Zero()), k_g),
-                        aside = overturn_barrier(s.model, 0, turned(s.model, 0.02 * Vec3::UnitX()), k_g);
+  const OverturnBarrier upright = barrier_alone(s.model, turned(s.model, Vec3::Zero())),
+                        aside = barrier_alone(s.model, turned(s.model, 0.02 * Vec3::UnitX()));
   EXPECT_EQ(aside.left, upright.whole);
   EXPECT_EQ(aside.whole, upright.whole);
-  EXPECT_EQ(overturn_barrier(s.model, 0, turned(s.model, 0.3 * Vec3::UnitY()), k_g).left, 0);
-  EXPECT_TRUE(std::isinf(overturn_barrier(sled(1, 0.06, 0.03), 0, turned(s.model, Vec3::Zero()), k_g).left));
+  EXPECT_EQ(barrier_alone(s.model, turned(s.model, 0.3 * Vec3::UnitY())).left, 0);
+  EXPECT_TRUE(std::isinf(barrier_alone(sled(1, 0.06, 0.03), turned(s.model, Vec3::Zero())).left));
 }
 
 TEST(Overturn, critical_angle_tells_front_from_back) {
@@ -141,7 +153,7 @@ TEST(Overturn, critical_angle_tells_front_from_back) {
     return outward.dot(spec.nodes[a] - c) / outward.dot(d);
   };
   const auto critical = [&](const Vec3& d) {
-    return critical_angle(model, 0, turned(model, 0.1 * Vec3::UnitZ().cross(d)));
+    return critical_angle_alone(model, turned(model, 0.1 * Vec3::UnitZ().cross(d)));
   };
   EXPECT_NEAR(critical(-Vec3::UnitX()), std::atan2(c.x() + 0.5, c.z()), 1e-9);
   EXPECT_NEAR(critical(Vec3::UnitY()), std::atan2(ahead(0, 1, Vec3::UnitY()), c.z()), 1e-9);
@@ -151,17 +163,17 @@ TEST(Overturn, critical_angle_tells_front_from_back) {
 
 TEST(Overturn, bodies_without_a_base_or_a_floor_or_with_supports_of_the_base_cannot_overturn) {
   const BodyPose upright{Vec3::Zero(), Quat::Identity()};
-  EXPECT_TRUE(std::isinf(critical_angle(sled(1, 0.06, 0.03), 0, upright)));
+  EXPECT_TRUE(std::isinf(critical_angle_alone(sled(1, 0.06, 0.03), upright)));
   Standing s = standing();
-  EXPECT_FALSE(std::isinf(critical_angle(s.model, 0, upright)));
+  EXPECT_FALSE(std::isinf(critical_angle_alone(s.model, upright)));
   s.model.supports.push_back({0, 0x7});
-  EXPECT_TRUE(std::isinf(critical_angle(s.model, 0, upright)));
+  EXPECT_TRUE(std::isinf(critical_angle_alone(s.model, upright)));
   const auto top = std::ranges::max_element(s.model.node_position, {}, [](const Vec3& x) { return x.z(); });
   s.model.supports[0].node = static_cast<int>(top - s.model.node_position.begin());  // that may break
-  EXPECT_FALSE(std::isinf(critical_angle(s.model, 0, upright)));
+  EXPECT_FALSE(std::isinf(critical_angle_alone(s.model, upright)));
   s.model.supports.clear();
   s.model.planes[0].normal = Vec3::UnitX();
-  EXPECT_TRUE(std::isinf(critical_angle(s.model, 0, upright)));
+  EXPECT_TRUE(std::isinf(critical_angle_alone(s.model, upright)));
 }
 
 TEST(Overturn, slide_is_the_horizontal_travel_of_the_base) {
@@ -200,6 +212,50 @@ TEST(Overturn, slide_of_what_stands_on_another_body_is_along_that) {
   };
   EXPECT_NEAR(slide(model, 1, moved(1, Vec3::Zero()), 0, moved(0, Vec3::Zero())), 0, 1e-12);
   EXPECT_NEAR(slide(model, 1, moved(1, {0.018, 0.024, 0.1}), 0, moved(0, Vec3::Zero())), 0.03, 1e-12);
+}
+
+// Three blocks on each other that tilt as one, then without the topmost, which lies on the floor.
+TEST(Overturn, what_a_body_bears_counts_while_it_is_above_its_base) {
+  constexpr double k_tilt = 0.05;
+  Model model;
+  double height = 0;
+  for (const double mass : {20., 30., 5.}) {
+    BlockSpec spec;
+    spec.name = copy_name("block", model.bodies.size());
+    spec.size = Vec3(0.3, 0.4, 0.5);
+    spec.cg = Vec3(0, 0, 0.2);
+    spec.mass = mass;
+    spec.at = Vec3(0.01 * static_cast<double>(model.bodies.size()), 0, height);
+    add_block(model, spec);
+    height += spec.size.z() + contact_width_of(spec.size);
+  }
+  model.planes.push_back(ground(0));
+  const Vec3 pivot(0.15, 0, 0);
+  const Quat turn = exp_quaternion(k_tilt * Vec3::UnitY());
+  std::vector<BodyPose> poses;
+  for (const Body& body : model.bodies)
+    poses.push_back({pivot + turn * (body.centre_of_gravity - pivot), turn});
+  const double base = model.bodies[0].support_polygon[0].z();
+  const auto critical = [&](std::span<const double> masses) {
+    double sum = 0;
+    Vec3 moment = Vec3::Zero();
+    for (std::size_t b = 0; b < masses.size(); ++b) {
+      sum += masses[b];
+      moment += masses[b] * model.bodies[b].centre_of_gravity;
+    }
+    return std::atan2(0.15 - moment.x() / sum, moment.z() / sum - base);
+  };
+  const std::vector<int> bearers = bearers_of(model);
+  ASSERT_EQ(bearers, (std::vector{-1, 0, 1}));
+  const std::vector<Burdened> all = burdened(model, bearers, poses);
+  EXPECT_NEAR(critical_angle(model, 0, poses[0], all[0]), critical(std::vector{20., 30., 5.}), 1e-12);
+  EXPECT_NEAR(all[0].mass, 55, 1e-12);
+  EXPECT_NEAR(all[1].mass, 35, 1e-12);
+  EXPECT_EQ(all[2].centre_of_gravity, model.bodies[2].centre_of_gravity);
+  poses[2].centre = Vec3(0.5, 0, 0.2);
+  const std::vector<Burdened> left = burdened(model, bearers, poses);
+  EXPECT_NEAR(critical_angle(model, 0, poses[0], left[0]), critical(std::vector{20., 30.}), 1e-12);
+  EXPECT_NEAR(left[1].mass, 30, 1e-12);
 }
 
 struct Observed {
@@ -248,6 +304,11 @@ TEST(Overturn, block_released_below_the_critical_angle_returns_and_above_it_fall
       EXPECT_GT(fallen.final_tilt, 1.3);
       EXPECT_TRUE(fallen.outcome.over_60_since);
       EXPECT_GT(fallen.outcome.peak_stress, 0);
+      EXPECT_EQ(fallen.outcome.impacts, 0);  // its base is no longer what it lies on
+      EXPECT_TRUE(std::ranges::none_of(fallen.events, [&](const Event& event) {
+        return event.time > *fallen.outcome.beyond_since &&
+               (event.kind == Event::Kind::uplift || event.kind == Event::Kind::impact);
+      }));
     }
 }
 
