@@ -71,9 +71,9 @@ std::string loss_in_words(const ordered_json& step) {
     const ordered_json within = mode.value("within", ordered_json());
     const std::string place = within.is_null() ? fmt::format("node {}", mode["node"].get<int>())
                                                : "the inside of member \"" + within.get<std::string>() + "\"";
+    const auto part = [&](int k) { return std::round(100 * mode["direction"][k].get<double>()) / 100 + 0.; };
     out += fmt::format("; {} of \"{}\" moves most, along ({:.2f}, {:.2f}, {:.2f})", place,
-                       mode["body"].get<std::string>(), mode["direction"][0].get<double>(),
-                       mode["direction"][1].get<double>(), mode["direction"][2].get<double>());
+                       mode["body"].get<std::string>(), part(0), part(1), part(2));
   }
   return out;
 }

@@ -96,11 +96,12 @@ void warn_of_falls(const Setup& setup, const State& start, std::vector<std::stri
       list.push_back(
           fmt::format("\"{}\" stands on nothing, as the scene has no [floor]: it falls", body.name));
     else if (bottom - under.top > k_hangs)
-      list.push_back(fmt::format("\"{}\" stands on nothing: it hangs {:.4g} mm above {}{}", body.name,
-                                 1e3 * (bottom - under.top), what,
-                                 setup.run.settle
-                                     ? ", so that the run does not begin; settle = false lets it fall"
-                                     : " and falls when the run begins"));
+      list.push_back(fmt::format(
+          "\"{}\" stands on nothing: it hangs {:.4g} mm above {}{}", body.name, 1e3 * (bottom - under.top),
+          what,
+          setup.run.settle ? "; settling brings it down where that is little, else the run does not "
+                             "begin; settle = false lets it fall"
+                           : " and falls when the run begins"));
     else if (under.body >= 0 && bottom > k_hangs && under.top - bottom < k_top_of && under.aside > 0)
       list.push_back(fmt::format("the centre of gravity of \"{}\" is {:.4g} mm beside {}, on which it stands",
                                  body.name, 1e3 * under.aside, what));

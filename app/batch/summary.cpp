@@ -89,6 +89,7 @@ ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, c
           {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
           {"critical_tilt_deg", number(o.critical_of_peak * k_degrees)},
+          {"peak_critical_share", slides ? number(o.peak_share) : ordered_json(nullptr)},
           {"peak_slide_m", slides ? number(o.peak_slide) : ordered_json(nullptr)},
           {"final_slide_m", slides ? number(o.slide) : ordered_json(nullptr)},
           {"final_velocity_m_s", vector_json(momentum.velocity)},

@@ -100,8 +100,8 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const std::string bounds = may_strike ? " until it strikes something, from which a frame springs back"
                              : impacts > k_many_impacts
                                  ? fmt::format(" before its {} impacts, which enlarge that", impacts)
-                             : impacts > 0 ? " until it lands"
-                                           : "";
+                             : impacts > 0 || !body["first_beyond_critical_s"].is_null() ? " until it lands"
+                                                                                         : "";
   return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(), bounds);
 }
 
@@ -188,9 +188,10 @@ std::string lately_line(const ordered_json& b, const ordered_json& end) {
 
 // Of a body that a slight change may topple, or keep from it.
 std::string chance_line(const ordered_json& b) {
-  constexpr double k_near = 0.8;  // of the critical angle
-  if (b["peak_tilt_deg"].is_null() || b["critical_tilt_deg"].is_null()) return "";
-  const double share = b["peak_tilt_deg"].get<double>() / b["critical_tilt_deg"].get<double>();
+  constexpr double k_near = 0.8;                                             // of the critical angle
+  const ordered_json told = b.value("peak_critical_share", ordered_json());  // older recordings lack it
+  if (told.is_null()) return "";
+  const auto share = told.get<double>();
   const bool fell = b["overturned"].get<bool>();
   const auto before = [&](const ordered_json& impact) { return impact < b["overturn_time_s"]; };
   const auto impacts = fell ? std::ranges::count_if(b["impact_times_s"], before) : 0;

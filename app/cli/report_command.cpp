@@ -49,28 +49,18 @@ constexpr render::Float4 k_plain = {0.30f, 0.42f, 0.55f, 1};
 double tilt_of(const io::FrameRow& row, std::size_t body) {
   return row.body[body].tilt * k_degrees;
 }
-double critical_of(const io::FrameRow& row, std::size_t body) {
-  return row.body[body].critical_angle * k_degrees;
-}
 
 std::vector<TiltCurve> tilt_curves(const Replay& replay, const nlohmann::ordered_json& bodies) {
   std::vector<TiltCurve> curves(bodies.size());
-  std::vector<double> most(bodies.size(), -1);
   for (std::int64_t i = 0; i < replay.frame_count(); ++i) {
     const io::FrameRow row = replay.frame(i);
     for (std::size_t b = 0; b < curves.size(); ++b) {
-      const double tilt = tilt_of(row, b);
       curves[b].time.push_back(row.time);
-      curves[b].tilt.push_back(tilt);
-      if (tilt <= most[b]) continue;
-      most[b] = tilt;
-      if (const double angle = critical_of(row, b); angle > 0) curves[b].critical = angle;
+      curves[b].tilt.push_back(tilt_of(row, b));
     }
   }
   for (std::size_t b = 0; b < curves.size(); ++b)
-    if (!bodies[b]["overturn_time_s"].is_null())
-      if (const double angle = critical_of(replay.at(bodies[b]["overturn_time_s"]), b); angle > 0)
-        curves[b].critical = angle;
+    if (const auto& angle = bodies[b]["critical_tilt_deg"]; !angle.is_null()) curves[b].critical = angle;
   return curves;
 }
 

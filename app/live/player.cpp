@@ -4,7 +4,6 @@
 
 #include "app/picture/bridge.h"
 #include "solver/io/edit/edit_text.h"
-#include "solver/run/bearer.h"
 
 namespace topple::app {
 namespace {
@@ -42,7 +41,7 @@ double nearest_time(const Rows& rows, double time) {
 
 Player::Player(std::shared_ptr<const io::Scene> scene, LiveRun& run, std::size_t most_bytes)
     : scene_(std::move(scene)),
-      bearers_(bearers_of(scene_->setup.model)),
+      bearers_(bearers_of(scene_->setup.model, scene_->setup.starts)),
       run_(run),
       most_bytes_(most_bytes),
       parameters_(scene_->setup.parameters),

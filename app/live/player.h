@@ -12,6 +12,7 @@
 #include "app/live/live_run.h"
 #include "app/picture/run_extent.h"
 #include "app/picture/thinning.h"
+#include "solver/run/bearer.h"
 
 namespace topple::app {
 
@@ -88,7 +89,7 @@ class Player {
 
   // What is seen.
   const io::Scene& scene() const { return *scene_; }
-  std::span<const int> bearers() const { return bearers_; }  ///< bearers_of its model
+  std::span<const Bearer> bearers() const { return bearers_; }  ///< bearers_of the scene
   const LiveStatus& status() const { return status_; }
   /// The frame shown, interpolated between two recorded ones while a replay goes on; nothing before the
   /// first.
@@ -134,7 +135,7 @@ class Player {
   std::vector<RowPtr> rows_on_way_to(std::int32_t branch) const;
 
   const std::shared_ptr<const io::Scene> scene_;
-  const std::vector<int> bearers_;
+  const std::vector<Bearer> bearers_;
   LiveRun& run_;
   const std::size_t most_bytes_;
   LiveStatus status_;

@@ -18,32 +18,45 @@ const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
   return at.amplitude < 2 * k_pi * at.frequency * limits.ishiyama ? k_rocks : k_may_overturn;
 }
 
-std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
-  const Model& model = player.scene().setup.model;
-  const Parameters& parameters = player.parameters();
+namespace {
+
+/// Towards the nearer edge across the first shake of a body that stands freely; none: it has none.
+std::optional<study::Standing> nearest_standing(const Model& model, const Parameters& parameters, int body) {
   if (!study::why_no_block(model, body).empty()) return std::nullopt;
-  const auto row = player.row();
-  const bool planar = row && row->level[static_cast<std::size_t>(body)] ==
-                                 static_cast<std::uint8_t>(ModelLevel::planar);  // on a hard floor
-  std::optional<CriteriaLimits> least;
+  std::optional<study::Standing> least;
   for (const double sense : {1., -1.}) {
-    const Vec3 direction = sense * parameters.shakes.front().direction;
-    auto standing = study::standing_towards(model, parameters, body, direction);
-    if (!standing) continue;
-    const double rigid = study::west_acceleration(*standing), base = standing->base;
-    const auto soft = planar ? std::nullopt : study::soft_limit(*standing, parameters.contact);
-    if (soft) standing->base *= *soft / rigid;
-    const double west = study::west_acceleration(*standing);
-    if (!least || west < least->west)
-      least = CriteriaLimits{west, rigid, study::ishiyama_velocity(*standing), base, standing->height};
+    const auto standing =
+        study::standing_towards(model, parameters, body, sense * parameters.shakes.front().direction);
+    if (standing && (!least || standing->rigid_limit() < least->rigid_limit())) least = standing;
   }
   return least;
 }
 
+}  // namespace
+
+std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
+  const Parameters& parameters = player.parameters();
+  if (!has_limits(player.scene().setup.model, parameters, body)) return std::nullopt;
+  study::Standing standing = *nearest_standing(player.scene().setup.model, parameters, body);
+  const auto row = player.row();
+  const bool planar = row && row->level[static_cast<std::size_t>(body)] ==
+                                 static_cast<std::uint8_t>(ModelLevel::planar);  // on a hard floor
+  const double rigid = study::west_acceleration(standing), base = standing.base;
+  const auto soft = planar ? std::nullopt : study::soft_limit(standing, parameters.contact);
+  if (soft) standing.base *= *soft / rigid;
+  return CriteriaLimits{study::west_acceleration(standing), rigid, study::ishiyama_velocity(standing), base,
+                        standing.height};
+}
+
 bool has_limits(const Model& model, const Parameters& parameters, int body) {
-  return study::why_no_block(model, body).empty() &&
-         (study::standing_towards(model, parameters, body, parameters.shakes.front().direction) ||
-          study::standing_towards(model, parameters, body, -parameters.shakes.front().direction));
+  const auto standing = nearest_standing(model, parameters, body);
+  return standing && !study::slides_first(model, parameters, body, *standing);
+}
+
+std::string slides_in_words(const Model& model, const Parameters& parameters, int body) {
+  const auto standing = nearest_standing(model, parameters, body);
+  if (!standing || !study::slides_first(model, parameters, body, *standing)) return "";
+  return say(k_slides_first, model.bodies[static_cast<std::size_t>(body)].name, standing->rigid_limit());
 }
 
 std::string held_in_words(const Player& player, int body) {

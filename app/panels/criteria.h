@@ -22,7 +22,7 @@ struct CriteriaLimits {
   double base, height;  ///< m, from the edge to the centre of gravity, and up to it
 };
 
-/// Whether a body stands freely with an edge across the first shake.
+/// Whether a body stands freely with an edge across the first shake, and lifts there before it slides.
 bool has_limits(const Model& model, const Parameters& parameters, int body);
 
 /// Soft contacts: of the block whose base is as much narrower as they take off the steady push that it
@@ -31,6 +31,9 @@ std::optional<CriteriaLimits> limits_of(const Player& player, int body);
 
 /// k_stays, k_rocks or k_may_overturn.
 const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& shake);
+
+/// That a body with such an edge slides before it lifts. Empty: it does not.
+std::string slides_in_words(const Model& model, const Parameters& parameters, int body);
 
 /// That the criteria do not hold of a body that an anchor holds now. Empty: none does.
 std::string held_in_words(const Player& player, int body);

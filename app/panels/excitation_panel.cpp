@@ -112,7 +112,14 @@ void draw_criteria(const Player& player, TeachingState& state) {
       if (has_limits(model, parameters, b)) state.body = b;
   }
   if (!state.body) {
-    ImGui::TextWrapped("%s", say(k_no_standing_body).c_str());
+    bool told = false;
+    for (int b = 0; b < furniture; ++b)
+      if (const std::string words = slides_in_words(model, parameters, b); !words.empty()) {
+        ImGui::TextWrapped("%s", words.c_str());
+        told = true;
+        break;
+      }
+    if (!told) ImGui::TextWrapped("%s", say(k_no_standing_body).c_str());
     return;
   }
   ImGui::AlignTextToFramePadding();

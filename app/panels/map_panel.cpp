@@ -307,7 +307,13 @@ void draw_map_controls(const Player& player, MapState& state) {
   using Follows = MapState::Follows;
   const bool trying = state.follows == Follows::untried;  // whether the map can follow: nobody asked for it
   const auto found = state.search && !trying ? state.search->result() : nullptr;
-  const bool searching = state.search && !trying && !state.search->over();
+  const bool busy = state.search && !state.search->over(), searching = busy && !trying;
+  if (busy && trying && state.shown) {
+    ImGui::TextUnformatted(say(k_map_progress, state.shown->map.run, state.shown->map.of).c_str());
+    ImGui::ProgressBar(static_cast<float>(state.search->progress()), {-1, 0.5f * ImGui::GetTextLineHeight()},
+                       "");
+    return;
+  }
   if (state.follows == Follows::yes) {
     ImGui::TextDisabled("%s", say(k_map_follows).c_str());
   } else {

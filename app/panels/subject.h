@@ -33,8 +33,8 @@ Subject subject_named(const Model& model, const std::string& name);
 /// A recorded frame and, for differences in time, its neighbours; null: there is none.
 struct FrameContext {
   const Model& model;
-  const Vec3& gravity;           ///< m/s^2
-  std::span<const int> bearers;  ///< bearers_of(model)
+  const Vec3& gravity;              ///< m/s^2
+  std::span<const Bearer> bearers;  ///< bearers_of the scene
   const io::FrameRow& row;
   const io::FrameRow* before = nullptr;
   const io::FrameRow* after = nullptr;

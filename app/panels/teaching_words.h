@@ -12,6 +12,12 @@ inline constexpr Phrase k_no_standing_body{
     "床に自立する家具がないため、判定基準は適用できません。"};
 inline constexpr Phrase k_stands_not_freely{"{0} (held, on another, or bears one)",
                                             "{0}（固定・家具の上・家具を載せている）"};
+inline constexpr Phrase k_slides_first{
+    "{0} slides before it can lift: friction is below b/h = {1:.2f}. The criteria, which are of blocks that "
+    "do "
+    "not slip, say nothing of it.",
+    "{0} は浮き上がる前に滑ります（摩擦係数が b/h = {1:.2f} 未満）。滑らない剛体の判定基準は"
+    "適用できません。"};
 inline constexpr Phrase k_no_floor_shake{"The floor does not shake here.", "このシーンでは床は揺れません。"};
 inline constexpr Phrase k_building_between{
     "A building stands between the ground that is set here and the floor: the criteria, which are for the "
@@ -106,8 +112,11 @@ inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床�
 inline constexpr Phrase k_map_soft{
     "They are for a rigid floor; on the soft contacts of this scene a steady push of {0:.4g} gal tips it.",
     "剛な床に対する値です。このシーンの柔らかい接触では {0:.4g} gal の一定の力で倒れます。"};
-inline constexpr Phrase k_map_no_lines{"The criteria do not hold here, so the map has no lines.",
-                                       "判定基準を適用できないため、線はありません。"};
+inline constexpr Phrase k_map_no_lines{
+    "The criteria do not hold here (nothing stands freely, or it slides before it can lift), so the map has "
+    "no lines.",
+    "判定基準を適用できない（自立する家具がない、または浮き上がる前に滑る）ため、"
+    "線はありません。"};
 inline constexpr Phrase k_present{"now", "現在"};
 inline constexpr Phrase k_duration_axis{"duration, s", "継続時間 [s]"};
 inline constexpr Phrase k_one_cycle{"one cycle alone, exact", "1周期のみ（厳密解）"};

@@ -56,7 +56,7 @@ WaysInWords ways_in_words(const Setup& setup, const io::FrameRow& row, std::span
       if (hit.time <= row.time) {
         out.lines.push_back(say(k_way_hit, room.places[p].name,
                                 setup.model.bodies[static_cast<std::size_t>(hit.body)].name,
-                                fmt::format("{:.2f}", hit.time)));
+                                fmt::format("{:.1f}", hit.time)));
         out.harms.push_back(out.lines.back());
       }
   }

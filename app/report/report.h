@@ -18,7 +18,7 @@ namespace topple::app {
 /// Tilt of one body over the run.
 struct TiltCurve {
   std::vector<double> time, tilt;  ///< s, degrees
-  /// Degrees: the critical angle where the body passed it last, or where it tilted most; absent: it has none.
+  /// Degrees: the critical angle where the body passed it last, or came nearest to it; absent: it has none.
   std::optional<double> critical;
 };
 

@@ -36,12 +36,16 @@ std::size_t most_tilted(const ReportPage& page) {
   return most;
 }
 
+bool is_held(const Model& model, std::size_t body) {
+  return std::ranges::any_of(model.anchors, [&](const Anchor& anchor) {
+    return anchor.body == static_cast<int>(body) || anchor.other.body == static_cast<int>(body);
+  });
+}
+
 /// By the share of the angle at which it would overturn; of bodies that have none, by the angle.
 std::size_t nearest_to_falling(const ReportPage& page) {
   std::optional<std::size_t> most;
-  const auto share = [&](std::size_t b) {
-    return page.bodies()[b]["peak_tilt_deg"].get<double>() / *page.report().tilts[b].critical;
-  };
+  const auto share = [&](std::size_t b) { return page.bodies()[b]["peak_critical_share"].get<double>(); };
   for (std::size_t b = 0; b < page.bodies().size(); ++b)
     if (page.report().tilts[b].critical && (!most || share(b) > share(*most))) most = b;
   return most.value_or(most_tilted(page));
@@ -57,12 +61,22 @@ std::string verdict(const ReportPage& page) {
   std::string out;
   if (falls.empty()) {
     const std::size_t most = nearest_to_falling(page);
-    const std::string tilt = shown(page.bodies()[most]["peak_tilt_deg"].get<double>(), 2);
+    const ordered_json& body = page.bodies()[most];
     const std::optional<double>& critical = page.report().tilts[most].critical;
-    const bool over = critical && page.bodies()[most]["peak_tilt_deg"].get<double>() > *critical;
-    return critical ? page.say(over ? words::k_nothing_stays_over : words::k_nothing_falls, page.name(most),
-                               tilt, shown(*critical, 2))
-                    : page.say(words::k_nothing_falls_far, page.name(most), tilt);
+    if (!critical)
+      return page.say(words::k_nothing_falls_far, page.name(most),
+                      shown(body["peak_tilt_deg"].get<double>(), 2));
+    const auto share = body["peak_critical_share"].get<double>();
+    const Phrase& said = share > 1                                         ? words::k_nothing_stays_over
+                         : is_held(page.report().scene->setup.model, most) ? words::k_nothing_falls_held
+                                                                           : words::k_nothing_falls;
+    out = page.say(said, page.name(most), shown(share * *critical, 2), shown(*critical, 2));
+    const ordered_json& e = page.report().summary["error_estimate"];
+    const ordered_json tilt_error =
+        e.contains("bodies") ? e["bodies"][most]["peak_tilt_deg"] : ordered_json();
+    if (!tilt_error.is_null() && share < 1 && tilt_error.get<double>() > (1 - share) * *critical)
+      out += " " + page.say(words::k_error_reaches, shown(tilt_error.get<double>(), 1));
+    return out;
   }
   if (falls.size() > k_named_falls)
     return page.say(words::k_many_fall, falls.size(), count, page.name(falls[0]), fall_time(page, falls[0]));

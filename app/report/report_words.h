@@ -23,11 +23,19 @@ inline constexpr Phrase k_many_fall{
 inline constexpr Phrase k_nothing_falls{
     "Nothing overturns. “{0}” comes nearest to it: it tilts by {1}° of the {2}° at which it would.",
     "転倒する家具はない。最も転倒に近いのは「{0}」で、最大傾斜角{1}°（転倒限界角 {2}°）。"};
+inline constexpr Phrase k_nothing_falls_held{
+    "Nothing overturns. “{0}” comes nearest to it: it tilts by {1}°; without what holds it, it would "
+    "overturn "
+    "from {2}° on.",
+    "転倒する家具はない。最も転倒に近いのは「{0}」で、最大傾斜角{1}°（固定しない場合の転倒限界角 {2}°）。"};
 inline constexpr Phrase k_nothing_stays_over{
     "Nothing overturns. “{0}” comes nearest to it: it tilts by {1}°, beyond the {2}° at which it would "
     "alone, and comes back.",
     "転倒する家具はない。最も転倒に近いのは「{0}」で、最大傾斜角{1}°"
     "（単独での転倒限界角 {2}°を超えて戻る）。"};
+inline constexpr Phrase k_error_reaches{
+    "The numerical error of that, ±{0}°, is greater than what was left: the verdict is not certain.",
+    "数値誤差（±{0}°）は余裕より大きく、この判定は確かではない。"};
 inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts most, by {1}°.",
                                             "転倒する家具はない。最も大きく傾くのは「{0}」で、最大{1}°。"};
 inline constexpr Phrase k_is_hit{"“{0}” is hit by “{1}” after {2} s.", "「{0}」に{2}秒で「{1}」が当たる。"};

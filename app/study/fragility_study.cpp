@@ -60,6 +60,9 @@ std::string criteria_in_words(const study::FragilityPlan& plan, const study::Fra
 std::string in_words(const study::FragilityPlan& plan, const study::FragilityResults& results) {
   std::string text = fmt::format("probability over the {}{}, sliding over {:g} mm\n", plan.measure->title,
                                  plan.levels.unit.empty() ? "" : ", " + plan.levels.unit, 1e3 * plan.slide);
+  if (results.runs < results.of)
+    text +=
+        fmt::format("of {} of {} runs alone; the others are not computed yet\n", results.runs, results.of);
   for (std::size_t b = 0; b < results.bodies.size(); ++b) {
     text += results.bodies[b] + "\n";
     for (std::size_t s = 0; s < study::k_states; ++s)
@@ -109,8 +112,9 @@ Findings findings(const study::FragilityPlan& plan, const study::FragilityResult
                    study::ChartFormat format) { return fragility_chart(plan, results, origin, format); },
       .text = in_words(plan, results),
       .each = fmt::format(" of up to {} runs", plan.chunk),
-      .pace = fmt::format(", {:.4g} runs a second and core",
-                          static_cast<double>(results.runs) / std::max(1e-9, results.cpu))};
+      .pace = fmt::format(", {:.4g} runs a second and core{}",
+                          static_cast<double>(results.runs) / std::max(1e-9, results.cpu),
+                          results.runs < results.of ? " of those that ended" : "")};
 }
 
 }  // namespace

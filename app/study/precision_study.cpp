@@ -53,7 +53,10 @@ std::string default_in_words(const study::PrecisionPlan& plan, const study::Prec
     const auto measure = static_cast<study::Measure>(m);
     if (const auto place = place_of_default(plan, results, measure)) {
       const bool cheaper = place->cost_ratio > k_better, nearer = place->error_ratio > k_better;
-      text += fmt::format("  {}: off by {}; ", name(measure), percent(*own.errors[index(measure)]));
+      text += fmt::format("  {}: off by {}", name(measure), percent(*own.errors[index(measure)]));
+      if (const auto& off = results.references.front().uncertainty[index(measure)])
+        text += fmt::format(", the reference itself by {}", percent(*off));
+      text += "; ";
       if (cheaper) text += fmt::format("others are as exact for {:.2g} of its cost", 1 / place->cost_ratio);
       if (nearer)
         text += fmt::format("{} {:.2g} times nearer for all of it", cheaper ? "," : "others are",

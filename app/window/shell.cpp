@@ -131,9 +131,13 @@ bool Shell::finish_opening() {
   try {
     LiveSource source = done.take();
     std::optional<EarlierRun> before;
-    if (shaking_ && session_ && before_ == &session_->scene() && !room_->is_another() &&
-        session_->scene().text != room_->room().text() && session_->player().way().size() > 1)
-      before = EarlierRun(session_->scene_ptr(), session_->player().way());
+    if (shaking_ && session_ && before_ == &session_->scene() && !room_->is_another()) {
+      const bool changed = session_->scene().text != room_->room().text();
+      if (changed && session_->player().way().size() > 1)
+        before = EarlierRun(session_->scene_ptr(), session_->player().way());
+      else
+        before = session_->viewer().take_earlier();
+    }
     show(std::move(source), opening_path_);
     if (shaking_) {
       room_->begin_run();

@@ -449,7 +449,8 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
   } else if (found->member >= members) {
     inspect(Subject{Subject::Kind::anchor, found->member - members});
   } else {
-    if (!traits(settings_.bodies).beams) return inspect(Subject{Subject::Kind::body, found->body});
+    const bool solid = player_.scene().setup.model.bodies[found->body].solid;
+    if (solid || !traits(settings_.bodies).beams) return inspect(Subject{Subject::Kind::body, found->body});
     const Subject member{Subject::Kind::member, found->member};
     inspect(inspection_.picked == member ? Subject{Subject::Kind::body, found->body} : member);
   }

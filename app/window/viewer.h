@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/live/player.h"
@@ -110,6 +111,7 @@ class Viewer {
   /// Something else was drawn in its place.
   void redraw() { scene_changed_ = true; }
   void show_beside(EarlierRun run) { earlier_ = std::move(run); }
+  std::optional<EarlierRun> take_earlier() { return std::exchange(earlier_, std::nullopt); }
   const Inspection& inspection() const { return inspection_; }
   const PictureSettings& settings() const { return settings_; }
   void choose_settings(const PictureSettings& settings) {

@@ -225,6 +225,10 @@ void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& 
     box.right = box.left + width;
     box.bottom = box.top + height;
     if (box.bottom > lowest) continue;
+    const float beside = (box.top + box.bottom) / 2;
+    if (std::abs(beside - room.top - at->y) > height)  // moved away from what it names
+      list.AddLine({room.left + at->x, room.top + at->y}, {box.left, beside}, colours(frame.dark).title,
+                   std::max(1.f, unit));
     list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, colours(frame.dark).sheet, pad);
     list.AddText(fonts.small, font.FontSize, {box.left + pad, box.top + pad}, colours(frame.dark).title,
                  label.words.c_str());

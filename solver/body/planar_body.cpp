@@ -29,7 +29,7 @@ constexpr double k_softer = 1 - 1e-6;   // alpha over that of a hard floor, whic
 constexpr double k_noise = 1e-12;       // rad, m/s, rad/s: what a best fit makes of nothing
 constexpr double k_same_place = 1e-7;   // m, as in planar_case.cpp
 constexpr double k_longest = 0.01;      // s, step of an adaptive run while it rocks or flies,
-constexpr double k_shortest = 1e-3;     // s, but for one that ends
+constexpr double k_shortest = 1e-5;     // s, but for one that ends
 constexpr double k_after_event = 1e-7;  // s after an event
 constexpr double k_wall_margin = 1e-3;  // m
 
@@ -232,7 +232,8 @@ void PlanarBody::take_planned(State& next, StepEnergy& energy) const {
   energy.normal_damping += mass * exchanged_.impact;
 }
 
-void PlanarBody::place_within(const Parameters& parameters, const State& from, double time, State& at) {
+void PlanarBody::place_within(const Parameters& parameters, const State& from, const State& end, double time,
+                              State& at) {
   BlockState& s = at.blocks[body_] = from.blocks[body_];
   const PlanarCase* of = block(parameters, s.along);
   if (!of) return;
@@ -240,8 +241,17 @@ void PlanarBody::place_within(const Parameters& parameters, const State& from, d
   const StepInputs start(parameters, from.time), now(parameters, time);
   s.motion.undecided |= start.floor != s.floor || of->block.static_friction != s.static_friction ||
                         of->block.kinetic_friction != s.kinetic_friction;
-  advance_to(*of, parameters, time, s.motion, step, nullptr);
-  balance(parameters, now, at);
+  planar::Exchanged until;
+  advance_to(*of, parameters, time, s.motion, step, &until);
+  // what lies between the step's ends in `at` is as far as the time is: this is what has been exchanged
+  const double part = (time - from.time) / (end.time - from.time), mass = of->block.mass;
+  EnergyLedger& books = at.energy;
+  books.input += mass * (until.input - part * exchanged_.input);
+  books.gravity += mass * (until.gravity - part * exchanged_.gravity);
+  books.friction += mass * (until.friction - part * exchanged_.friction);
+  books.normal_damping += mass * (until.impact - part * exchanged_.impact);
+  books.kinetic +=
+      balance(parameters, now, at).kinetic - (1 - part) * energy(from).kinetic - part * energy(end).kinetic;
 }
 
 BodyEnergy PlanarBody::balance(const Parameters& parameters, const StepInputs& now, State& state) {

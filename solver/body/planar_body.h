@@ -47,8 +47,10 @@ class PlanarBody {
                                   const StepInputs& end, const BlockState& from);
   /// Makes `next` what plan() found; adds to `energy`.
   void take_planned(State& next, StepEnergy& energy) const;
-  /// The motion at `time`, from that of `from`, the state at the start of the newest step.
-  void place_within(const Parameters& parameters, const State& from, double time, State& at);
+  /// The motion at `time` within the newest step, from that of `from` at its start, and the energies of `at`
+  /// there, which were between those of `from` and `end` in proportion.
+  void place_within(const Parameters& parameters, const State& from, const State& end, double time,
+                    State& at);
 
   /// Sets pose, velocity and what acts of State::bodies from State::blocks; returns the energies.
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, State& state);

@@ -1,7 +1,9 @@
 #include "solver/run/bearer.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "solver/math/rotation.h"
 #include "solver/run/footprint.h"
 
 namespace topple {
@@ -51,16 +53,53 @@ int bearer_of(const Model& model, std::span<const Vec3> position, int index) {
   const double bottom = heights(model, position, index).low;
   if (bottom < k_top_of) return -1;
   const Below under = below(model, position, index, true);
-  const double gap = bottom - under.top;
-  const bool bears = under.body >= 0 && !model.bodies[under.body].ground && gap < k_hangs && gap > -k_top_of;
+  const bool bears =
+      under.body >= 0 && !model.bodies[under.body].ground && std::abs(bottom - under.top) < k_top_of;
   return bears ? under.body : -1;
 }
 
-std::vector<int> bearers_of(const Model& model) {
-  std::vector<int> bearers;
-  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    bearers.push_back(bearer_of(model, model.node_position, b));
+namespace {
+
+// As seen along the axis of the body, where that leans.
+int bearer_in(const Model& model, const State& state, const BodyPose& pose, int index) {
+  const int bearer = bearer_of(model, state.position, index);
+  const double lean = tilt(pose);
+  if (bearer >= 0 || lean == 0 || lean > k_pi / 4 ||
+      heights(model, state.position, index).low < k_top_of)  // it leans on the floor
+    return bearer;
+  std::vector<Vec3> turned = state.position;
+  const double lift = pose.centre.norm() + model.bodies[index].reach + 2 * k_top_of;  // off the floor
+  for (Vec3& x : turned) x = pose.rotation.conjugate() * x + lift * Vec3::UnitZ();
+  return bearer_of(model, turned, index);
+}
+
+}  // namespace
+
+std::vector<Bearer> bearers_of(const Model& model, const std::vector<BodyStart>& starts) {
+  const State state = start_state(model, starts);
+  std::vector<BodyPose> poses;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Quat turn = exp_quaternion(starts[b].rotation);
+    poses.push_back({starts[b].pivot + turn * (model.bodies[b].centre_of_gravity - starts[b].pivot), turn});
+  }
+  std::vector<Bearer> bearers;
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const int under = bearer_in(model, state, poses[b], b);
+    bearers.push_back(
+        {under, under < 0 ? model.bodies[b].base_centre : place_on(model, b, poses[b], under, poses[under])});
+  }
   return bearers;
+}
+
+BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer) {
+  return bearer < 0 ? BodyPose{Vec3::Zero(), Quat::Identity()} : poses[bearer];
+}
+
+Vec3 place_on(const Model& model, int index, const BodyPose& pose, int bearer, const BodyPose& on) {
+  const Body& body = model.bodies[index];
+  const Vec3 now = pose.centre + pose.rotation * (body.base_centre - body.centre_of_gravity);
+  return bearer < 0 ? now
+                    : on.rotation.conjugate() * (now - on.centre) + model.bodies[bearer].centre_of_gravity;
 }
 
 }  // namespace topple

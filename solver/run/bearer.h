@@ -5,7 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "solver/body/body_pose.h"
 #include "solver/model/model.h"
+#include "solver/state/state.h"
 
 namespace topple {
 
@@ -28,10 +30,20 @@ struct Below {
 /// floor: there is one, at z = 0.
 Below below(const Model& model, std::span<const Vec3> position, int body, bool floor);
 
-/// The piece of furniture on which a body stands: below it in plan, with its top between k_hangs under the
-/// bottom of the body and k_top_of over that. -1: none.
+/// The piece of furniture on which a body stands: below it in plan, with its top within k_top_of of the
+/// bottom of the body. -1: none.
 int bearer_of(const Model& model, std::span<const Vec3> position, int body);
-/// The same of every body, in the reference pose.
-std::vector<int> bearers_of(const Model& model);
+
+/// What bears a body at the start.
+struct Bearer {
+  int body;    ///< as of bearer_of, likewise where both lean as one; -1: none, the floor
+  Vec3 place;  ///< m, where the middle of the base is on it, in its reference axes, or in the floor's frame
+};
+std::vector<Bearer> bearers_of(const Model& model, const std::vector<BodyStart>& starts);
+
+/// Of what bears a body, of whose kind `poses` are those of the first ones, now; -1: of the floor.
+BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer);
+/// Where the middle of the base of a body is now, as Bearer::place.
+Vec3 place_on(const Model& model, int body, const BodyPose& pose, int bearer, const BodyPose& on);
 
 }  // namespace topple

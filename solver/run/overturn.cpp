@@ -11,7 +11,6 @@
 #include "solver/element/section_forces.h"
 #include "solver/math/elementary.h"
 #include "solver/math/rotation.h"
-#include "solver/run/bearer.h"
 
 namespace topple {
 namespace {
@@ -85,20 +84,28 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
 
 }  // namespace
 
-std::vector<Burdened> burdened(const Model& model, std::span<const int> bearers,
+std::vector<Burdened> burdened(const Model& model, std::span<const Bearer> bearers,
                                std::span<const BodyPose> poses) {
+  constexpr double k_as_high = 0.25;  // of the reach
   std::vector<Burdened> all;
   for (std::size_t b = 0; b < poses.size(); ++b)
     all.push_back({model.bodies[b].mass, model.bodies[b].centre_of_gravity});
+  const auto within = [&](int under, const Vec3& point) -> Vec3 {
+    return poses[under].rotation.conjugate() * (point - poses[under].centre) +
+           model.bodies[under].centre_of_gravity;
+  };
+  const auto rides = [&](int b) {
+    const auto& [under, place] = bearers[b];
+    return std::abs((place_on(model, b, poses[b], under, poses[under]) - place).z()) <
+               k_as_high * model.bodies[b].reach &&
+           is_above(model.bodies[under].support_polygon, within(under, poses[b].centre));
+  };
   for (std::size_t b = 0; b < poses.size(); ++b)
-    for (int under = bearers[b]; under >= 0; under = bearers[under]) {
-      const Body& body = model.bodies[under];
-      const Vec3 centre = poses[under].rotation.conjugate() * (poses[b].centre - poses[under].centre) +
-                          body.centre_of_gravity;
-      if (!is_above(body.support_polygon, centre)) continue;
-      Burdened& on = all[under];
-      on.mass += model.bodies[b].mass;
-      on.centre_of_gravity += model.bodies[b].mass / on.mass * (centre - on.centre_of_gravity);
+    for (int on = static_cast<int>(b); bearers[on].body >= 0 && rides(on); on = bearers[on].body) {
+      Burdened& under = all[bearers[on].body];
+      under.mass += model.bodies[b].mass;
+      under.centre_of_gravity += model.bodies[b].mass / under.mass *
+                                 (within(bearers[on].body, poses[b].centre) - under.centre_of_gravity);
     }
   return all;
 }
@@ -122,23 +129,17 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
   return {std::min(barrier(edge->distance, tilt(pose)), upright), upright};
 }
 
-double slide(const Model& model, int index, const BodyPose& pose, int bearer, const BodyPose& on) {
-  const Body& body = model.bodies[index];
-  Vec3 now = pose.centre + pose.rotation * (body.base_centre - body.centre_of_gravity);
-  if (bearer >= 0) now = on.rotation.conjugate() * (now - on.centre) + model.bodies[bearer].centre_of_gravity;
-  return (now - body.base_centre).head<2>().norm();
+double slide(const Model& model, int index, const BodyPose& pose, const Bearer& bearer, const BodyPose& on) {
+  return (place_on(model, index, pose, bearer.body, on) - bearer.place).head<2>().norm();
 }
 
-BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer) {
-  return bearer < 0 ? BodyPose{Vec3::Zero(), Quat::Identity()} : poses[bearer];
-}
-
-Outcome::Outcome(const Model& model)
+Outcome::Outcome(const Model& model, const std::vector<BodyStart>& starts)
     : anchors_(model.anchors.size()),
-      bearers_(bearers_of(model)),
+      bearers_(bearers_of(model, starts)),
       broke_(model.elements.size()),
       flowed_(model.node_position.size()),
       furniture_(model.furniture_total()) {
+  courses_.resize(model.bodies.size());
   for (const Section& section : model.sections) {
     const auto of = [&](const Vec3& normal, const Vec3& moment) {
       return equivalent_stress(section, {normal, moment});
@@ -251,24 +252,34 @@ void Outcome::observe_level(const Parameters& parameters, const State& state, st
   }
 }
 
-void Outcome::observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
-                           const Burdened& all, std::size_t b, std::vector<Event>& events) {
+void Outcome::take_pose(const Model& model, std::span<const BodyPose> poses, const Burdened& all,
+                        std::size_t b) {
   BodyOutcome& o = bodies_[b];
   const int body = static_cast<int>(b);
   const BodyPose& pose = poses[b];
-  const double before = o.tilt - o.critical, time_before = o.time;
-  o.time = state.time;
-  const BodyPose on = bearer_pose(poses, bearers_[b]);
-  o.vertical = pose.rotation.conjugate() * (on.rotation * Vec3::UnitZ());
   o.tilt = tilt(pose);
   o.peak_tilt = std::max(o.peak_tilt, o.tilt);
   if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
   if (o.peak_tilts.empty()) o.peak_tilts.push_back(o.tilt);
   o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
-  o.slide = topple::slide(model, body, pose, bearers_[b], on);
+  o.slide = topple::slide(model, body, pose, bearers_[b], bearer_pose(poses, bearers_[b].body));
   o.peak_slide = std::max(o.peak_slide, o.slide);
   o.critical = critical_angle(model, body, pose, all);
-  if (o.tilt == o.peak_tilt) o.critical_of_peak = o.critical;
+  if (const double share = o.tilt / o.critical; !o.beyond_since && share >= o.peak_share) {
+    o.peak_share = share;
+    o.critical_of_peak = o.critical;
+  }
+}
+
+void Outcome::observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
+                           const Burdened& all, std::size_t b, std::vector<Event>& events) {
+  BodyOutcome& o = bodies_[b];
+  const double before = o.tilt - o.critical, time_before = o.time;
+  o.time = state.time;
+  const BodyPose on = bearer_pose(poses, bearers_[b].body);
+  o.vertical = poses[b].rotation.conjugate() * (on.rotation * Vec3::UnitZ());
+  take_pose(model, poses, all, b);
+  courses_[b] = courses(model, state, b);
   const double beyond = o.tilt - o.critical;
   if (beyond > 0 && !o.beyond_since) {
     const bool crossed = state.step > 0 && before < 0;
@@ -278,7 +289,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::span<con
     events.push_back({.kind = Event::Kind::overturn,
                       .step = state.step,
                       .time = *o.beyond_since,
-                      .body = body,
+                      .body = static_cast<int>(b),
                       .value = o.tilt});
   } else if (beyond <= 0) {
     o.beyond_since.reset();
@@ -289,8 +300,52 @@ void Outcome::observe_pose(const Model& model, const State& state, std::span<con
     o.over_60_since = state.time;
 }
 
-// What lifts off and lands, until the body overturns: then the base is no longer what it lies on. An uplift is
-// told once it counts, with the time at which the side let go.
+std::vector<BodyPose> Outcome::furniture_poses(const Model& model, const State& state) const {
+  std::vector<BodyPose> poses;
+  for (int b = 0; b < furniture_; ++b) poses.push_back(body_pose(model, state, b));
+  return poses;
+}
+
+std::array<Outcome::Course, 2> Outcome::courses(const Model& model, const State& state, std::size_t b) const {
+  constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
+  std::array<Course, 2> out{{{k_none, k_none}, {k_none, k_none}}};
+  const BodyState& s = state.bodies[b];
+  if (traits(s.level).moves_nodes) return out;
+  const Vec3 axis = s.rotation * Vec3::UnitZ(), turning = s.rotation * s.angular_velocity;
+  out[0] = {-axis.z(), -turning.cross(axis).z()};
+  if (bearers_[b].body >= 0) return out;
+  const Vec3 arm = s.rotation * (model.bodies[b].base_centre - model.bodies[b].centre_of_gravity);
+  const Vec2 way = (s.position + arm - bearers_[b].place).head<2>(),
+             speed = (s.velocity + turning.cross(arm)).head<2>();
+  const double slid = way.norm();
+  out[1] = {slid, slid > 0 ? way.dot(speed) / slid : speed.norm()};
+  return out;
+}
+
+void Outcome::observe_peaks(const Model& model, const State& end,
+                            const std::function<const State&(double time)>& within) {
+  for (std::size_t b = 0; b < static_cast<std::size_t>(furniture_); ++b) {
+    const BodyOutcome& o = bodies_[b];
+    const std::array<Course, 2> to = courses(model, end, b);
+    const double h = end.time - o.time;
+    const double least[] = {-elementary::cos(o.peak_tilts.empty() ? 0 : o.peak_tilts.back()), o.peak_slide};
+    for (std::size_t k = 0; k < to.size(); ++k) {
+      const Course &before = courses_[b][k], &after = to[k];
+      if (!(before.rate > 0 && after.rate < 0)) continue;
+      // the cubic polynomial with these values and rates, whose derivative is a t^2 + b t + c
+      const double rise = 6 * (before.value - after.value), r0 = h * before.rate, r1 = h * after.rate;
+      const double quadratic = rise + 3 * (r0 + r1), linear = -rise - 4 * r0 - 2 * r1;
+      const double t = 2 * r0 / (std::sqrt(linear * linear - 4 * quadratic * r0) - linear);
+      const double greatest = before.value + t * (r0 + t * (linear / 2 + t * quadratic / 3));
+      if (!(greatest > least[k])) continue;
+      const std::vector<BodyPose> poses = furniture_poses(model, within(o.time + t * h));
+      take_pose(model, poses, burdened(model, bearers_, poses)[b], b);
+    }
+  }
+}
+
+// What lifts off and lands, until the body overturns: then the base is no longer what it lies on. An uplift
+// is told once it counts, with the time at which the side let go.
 void Outcome::observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
   for (std::size_t i = 0; i < o.sides.size(); ++i) {
@@ -329,8 +384,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
                       const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
                       const std::vector<SectionForces>& sections, std::vector<Event>& events) {
   observe_forces(model, forces, between);
-  std::vector<BodyPose> poses;
-  for (int b = 0; b < furniture_; ++b) poses.push_back(body_pose(model, state, b));
+  const std::vector<BodyPose> poses = furniture_poses(model, state);
   const std::vector<Burdened> all = burdened(model, bearers_, poses);
   for (std::size_t b = 0; b < poses.size(); ++b) {
     observe_level(parameters, state, b, events);

@@ -1,7 +1,9 @@
 // Who falls: tilt, critical angle, uplift, impacts, overturning.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -9,6 +11,7 @@
 
 #include "solver/body/body_pose.h"
 #include "solver/model/model.h"
+#include "solver/run/bearer.h"
 #include "solver/state/state.h"
 #include "solver/state/step_result.h"
 
@@ -35,8 +38,9 @@ struct Burdened {
   Vec3 centre_of_gravity;  ///< m, of all, in the reference axes of the body
 };
 /// Of each of `poses`, those of the first bodies, now. Every piece counts that stood on the body at the
-/// start, or on such a piece, while its centre of gravity is above the base of the body. bearers: bearers_of.
-std::vector<Burdened> burdened(const Model& model, std::span<const int> bearers,
+/// start, or on such a piece, while it is on what bore it: its centre of gravity above the base of that, and
+/// its own base as high there as it was, to a quarter of its reach. bearers: bearers_of.
+std::vector<Burdened> burdened(const Model& model, std::span<const Bearer> bearers,
                                std::span<const BodyPose> poses);
 
 /// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
@@ -55,13 +59,9 @@ struct OverturnBarrier {
 OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, const Burdened& all,
                                  double gravity);
 
-/// Travel of the mid-point of the base along what bears the body since the reference pose, m: along the
-/// floor, or along the piece that it stands on there (bearer.h), in the axes of that, where `on` is its pose
-/// now. bearer: its index, -1: none.
-double slide(const Model& model, int body, const BodyPose& pose, int bearer, const BodyPose& on);
-
-/// Of what bears a body; bearer -1: of the floor.
-BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer);
+/// Travel of the middle of the base along what bears the body since the start, in its axes, m; along the
+/// floor since the reference pose. `on`: bearer_pose now.
+double slide(const Model& model, int body, const BodyPose& pose, const Bearer& bearer, const BodyPose& on);
 
 /// Something that happened to a body, at the end of a step.
 struct Event {
@@ -91,7 +91,8 @@ struct BodyOutcome {
   double tilt = 0, peak_tilt = 0;
   double slide = 0, peak_slide = 0;
   double critical = 0;                 ///< critical angle in the present direction
-  double critical_of_peak = 0;         ///< in that of the greatest tilt
+  double peak_share = 0;               ///< greatest tilt over critical angle until it overturns
+  double critical_of_peak = 0;         ///< critical angle then
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_beyond;  ///< it came there first, whether it came back or not
   std::optional<double> first_uplift;
@@ -135,7 +136,8 @@ struct AnchorOutcome {
 /// Follows a run step by step.
 class Outcome {
  public:
-  explicit Outcome(const Model& model);
+  /// starts: as of start_state.
+  Outcome(const Model& model, const std::vector<BodyStart>& starts);
   /// Takes in one accepted step. `forces`, `between`: contact forces of that state. Appends to `events`.
   void observe(const Model& model, const Parameters& parameters, const State& state,
                const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
@@ -143,11 +145,13 @@ class Outcome {
   /// Takes in stresses at a time within the step that is observed next: they may be greater there than at its
   /// ends, and no recorded row is to hold more than the peaks.
   void observe_stresses(const Model& model, const State& state, const std::vector<SectionForces>& sections);
+  /// Takes in the greatest tilts and slides within the step from the last observation to `end`; `within`
+  /// gives the state at a time there.
+  void observe_peaks(const Model& model, const State& end,
+                     const std::function<const State&(double time)>& within);
   const std::vector<BodyOutcome>& bodies() const { return bodies_; }
   const std::vector<AnchorOutcome>& anchors() const { return anchors_; }
-  const std::vector<int>& bearers() const {
-    return bearers_;
-  }                                        ///< per body, in the reference pose (bearer.h)
+  const std::vector<Bearer>& bearers() const { return bearers_; }  ///< per body
   bool all_overturned(double time) const;  ///< tilt of every body over 60 degrees for 0.5 s
 
  private:
@@ -162,6 +166,14 @@ class Outcome {
                      std::vector<Event>& events);
   void observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
                     const Burdened& all, std::size_t b, std::vector<Event>& events);
+  void take_pose(const Model& model, std::span<const BodyPose> poses, const Burdened& all, std::size_t b);
+  /// What grows and shrinks between steps, and its rate.
+  struct Course {
+    double value, rate;
+  };
+  /// Of a body that is no frame: -cos(tilt), 1, 1/s, and where the floor bears it slide, m, m/s.
+  std::array<Course, 2> courses(const Model& model, const State& state, std::size_t b) const;
+  std::vector<BodyPose> furniture_poses(const Model& model, const State& state) const;
   void observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events);
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
                         std::vector<Event>& events);
@@ -170,11 +182,12 @@ class Outcome {
 
   std::vector<BodyOutcome> bodies_;
   std::vector<AnchorOutcome> anchors_;
-  std::vector<int> bearers_;
-  std::vector<char> broke_;                   ///< per element
-  std::vector<char> flowed_;                  ///< per node: a section beside it has flowed
-  int furniture_;                             ///< bodies
-  std::vector<Eigen::Vector4d> unit_stress_;  ///< per section: Pa by N, Mx, My and Mz of one
+  std::vector<Bearer> bearers_;
+  std::vector<std::array<Course, 2>> courses_;  ///< per body, at this observation
+  std::vector<char> broke_;                     ///< per element
+  std::vector<char> flowed_;                    ///< per node: a section beside it has flowed
+  int furniture_;                               ///< bodies
+  std::vector<Eigen::Vector4d> unit_stress_;    ///< per section: Pa by N, Mx, My and Mz of one
   /// Per body, per side: N, on it and between it and the opposite side.
   std::vector<std::vector<double>> side_force_, inner_force_;
   std::vector<double> total_force_;  ///< per body, N

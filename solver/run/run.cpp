@@ -24,7 +24,7 @@ Run::Run(const Setup& setup)
     : setup_(&setup),
       now_{.state = start_state(setup.model, setup.starts),
            .parameters = setup.parameters,
-           .outcome = Outcome(setup.model),
+           .outcome = Outcome(setup.model, setup.starts),
            .probes = std::vector<ProbeOutcome>(setup.probes.size()),
            .places = std::vector<PlaceOutcome>(setup.room.places.size())},
       workspace_(setup.model) {
@@ -48,7 +48,7 @@ Run::Run(const Setup& setup)
 Run::Run(const Setup& setup, State state, Parameters parameters)
     : Run(setup, {.state = std::move(state),
                   .parameters = std::move(parameters),
-                  .outcome = Outcome(setup.model),
+                  .outcome = Outcome(setup.model, setup.starts),
                   .probes = std::vector<ProbeOutcome>(setup.probes.size()),
                   .places = std::vector<PlaceOutcome>(setup.room.places.size())}) {
   if (!status_.ok()) return;
@@ -83,6 +83,7 @@ StepStatus Run::advance() {
   now_.rejected_steps += status_.rejected;
   if (status_.ok()) {
     observe_stresses_since(start);
+    observe_peaks();
     observe();
   }
   return status_;
@@ -147,6 +148,15 @@ void Run::observe_stresses_since(double start) {
     look_within(row / rate);
     now_.outcome.observe_stresses(setup_->model, within_, within_acting_.sections);
   }
+}
+
+void Run::observe_peaks() {
+  const InPhase phase(&workspace_.profile(), Phase::observe);
+  if (within_.bodies.empty()) within_ = now_.state;  // takes its memory with the first step
+  now_.outcome.observe_peaks(setup_->model, now_.state, [this](double time) -> const State& {
+    state_within_step(setup_->model, now_.state, time, workspace_, within_);
+    return within_;
+  });
 }
 
 void Run::observe() {

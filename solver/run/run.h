@@ -144,6 +144,7 @@ class Run {
   void observe();
   // At the recorded times within the newest step, which began at `start`, s.
   void observe_stresses_since(double start);
+  void observe_peaks();
 
   const Setup* setup_;
   mutable RunPoint now_;  // nodes are placed when somebody looks

@@ -105,7 +105,7 @@ void state_within_step(const Model& model, const State& end, double time, Worksp
   state_between(model, w.next, end, time, at);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
     if (traits(w.next.bodies[b].level).has_block && traits(at.bodies[b].level).has_block)
-      w.parts.planar(b).place_within(*w.parameters, w.next, time, at);
+      w.parts.planar(b).place_within(*w.parameters, w.next, end, time, at);
 }
 
 }  // namespace topple

@@ -13,7 +13,8 @@ namespace topple {
 /// what is no frame are where they were at the end: place_nodes() places them.
 void state_between(const Model& model, const State& start, const State& end, double time, State& at);
 
-/// The same within the newest step, which ended in `end`, until another is tried with `workspace`.
+/// The same within the newest step, which ended in `end`, until another is tried with `workspace`; of planar
+/// blocks motion and energies are exact.
 void state_within_step(const Model& model, const State& end, double time, Workspace& workspace, State& at);
 
 }  // namespace topple

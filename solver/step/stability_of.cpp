@@ -59,11 +59,16 @@ void add_softest_mode(BodySystem& s, const std::vector<double>& growth, Stabilit
     out.node = s.first + i;
     out.direction = shift / greatest;
   }
+  // a mode has no sense of its own: the way that the loads push, or towards the axis that it is nearest to
+  const bool pushed = std::abs(share) > k_beside * std::sqrt(loads) * greatest;
+  Eigen::Index axis = 0;
+  out.direction.cwiseAbs().maxCoeff(&axis);
+  if ((pushed ? share : out.direction[axis]) < 0) out.direction = -out.direction;
   const bool hinged =
       ranges::any_of(s.elements, [](const ElementState& e) { return e.hinge != Hinge::none; });
-  out.loss = hinged                                                     ? Stability::Loss::mechanism
-             : std::abs(share) > k_beside * std::sqrt(loads) * greatest ? Stability::Loss::limit_point
-                                                                        : Stability::Loss::buckling;
+  out.loss = hinged   ? Stability::Loss::mechanism
+             : pushed ? Stability::Loss::limit_point
+                      : Stability::Loss::buckling;
 }
 
 bool is_at_yield(const Model& model, const State& state, int index) {

@@ -103,10 +103,13 @@ class Collector {
     // one without a name would be another
     if (item_of(trail.back()).key == "name" && trail.size() > 1) trail.pop_back();
     as_written.resize(trail.size());
+    const std::string left_out = path_of(as_written);
+    moved_ = moved_ || (!error.message.ends_with(k_overlap) &&
+                        (left_out.starts_with("furniture.") || left_out.starts_with("wall.")));
     Node& holder = *trail.back().first;
     const std::size_t index = trail.back().second;
     if (!is_entry(trail.back())) {
-      keys_.insert(path_of(as_written));
+      keys_.insert(left_out);
     } else {
       const Trail list(as_written.begin(), as_written.end() - 1);
       names_.insert(entry_name(*as_written.back().first, item_of(list.back()).key, as_written.back().second));
@@ -140,11 +143,7 @@ class Collector {
   }
 
   bool follows(const std::string& message, const std::string& error_path) const {
-    const auto moves_others = [](const std::string& path) {
-      return path.starts_with("furniture.") || path.starts_with("wall.");
-    };
-    if (message.ends_with(k_overlap) && (!names_.empty() || ranges::any_of(keys_, moves_others)))
-      return true;  // what stands where it should not
+    if (message.ends_with(k_overlap) && moved_) return true;  // what stands where it should not
     for (const std::string& path : keys_) {
       if (path == error_path || path.starts_with(error_path + ".")) return true;  // an entry without its key
       const std::string key = path.substr(path.rfind('.') + 1);
@@ -169,6 +168,7 @@ class Collector {
   const SceneSource& source_;
   std::vector<Found> found_;
   std::set<std::string> keys_, names_;  // left out: paths of keys, names of entries
+  bool moved_ = false;                  // something of furniture or walls was left out, by which others stand
   bool stands_in_ = false;
 };
 

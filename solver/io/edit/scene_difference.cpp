@@ -6,6 +6,7 @@
 
 #include "solver/io/common/digits.h"
 #include "solver/io/document/scene_document.h"
+#include "solver/io/edit/scene_number.h"
 #include "solver/io/scene/scene_keys.h"
 
 namespace topple::io {
@@ -48,14 +49,14 @@ Value value_of(const Node& node, const Key* key) {
   return {out.exact + "]", out.shown + "]"};
 }
 
-/// What an absent key means, where that is a value.
-std::optional<Value> fallback(const Key* key) {
+/// What a key means that the scene leaves out, where that is a value.
+std::optional<Value> fallback(const Scene& scene, const Key* key) {
   if (!key || key->fallback.empty()) return std::nullopt;
   const double first = key->fallback.front();
   switch (key->type) {
     case KeyType::number:
     case KeyType::integer:
-      return quantity(key, first);
+      return quantity(key, *value_left_out(scene, *key));
     case KeyType::boolean:
       return Value{first != 0 ? "true" : "false", first != 0 ? "true" : "false"};
     case KeyType::choice: {
@@ -80,6 +81,8 @@ std::string cut(const std::string& text) {
 
 class Comparison {
  public:
+  Comparison(const Scene& a, const Scene& b) : a_(a), b_(b) {}
+
   std::vector<SceneDifference> found;
 
   void tables(const Node* a, const Node* b, const std::string& path, const std::string& table) {
@@ -108,10 +111,10 @@ class Comparison {
     if (is_entries(a) || is_entries(b)) return entries(a, b, path, inner);
     if ((is_table(a) || !a) && (is_table(b) || !b)) return tables(a, b, path, inner);
     const Key* const key = find_key(table, name);
-    const auto value = [&](const Node* node) {
-      return node ? std::optional(value_of(*node, key)) : fallback(key);
+    const auto value = [&](const Scene& scene, const Node* node) {
+      return node ? std::optional(value_of(*node, key)) : fallback(scene, key);
     };
-    const std::optional<Value> left = value(a), right = value(b);
+    const std::optional<Value> left = value(a_, a), right = value(b_, b);
     if (left && right && left->exact == right->exact) return;
     const auto text = [](const std::optional<Value>& v) {
       return v ? std::optional(cut(v->shown)) : std::nullopt;
@@ -138,13 +141,15 @@ class Comparison {
                            of_b ? std::optional<std::string>("present") : std::nullopt});
       }
   }
+
+  const Scene &a_, &b_;
 };
 
 }  // namespace
 
 std::vector<SceneDifference> differences(const Scene& a, const Scene& b) {
   const Node left = parse_toml(a.text, a.name), right = parse_toml(b.text, b.name);
-  Comparison comparison;
+  Comparison comparison(a, b);
   comparison.tables(&left, &right, "", "");
   return std::move(comparison.found);
 }

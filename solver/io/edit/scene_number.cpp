@@ -1,5 +1,7 @@
 #include "solver/io/edit/scene_number.h"
 
+#include <utility>
+
 #include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene_check.h"
 
@@ -10,10 +12,10 @@ bool takes_number(const Key& key) {
   return key.type == KeyType::number || (key.type == KeyType::numbers && key.least_count == 1);
 }
 
-std::optional<double> value_of(const Node* node, const Key& key) {
-  if (!node) return key.fallback.size() == 1 ? std::optional(key.fallback.front()) : std::nullopt;
+std::optional<double> value_of(const Scene& scene, const Node* node, const Key& key) {
+  if (!node) return value_left_out(scene, key);
   if (node->kind == Node::Kind::list)
-    return node->items.size() == 1 ? value_of(&node->items.front().value, key) : std::nullopt;
+    return node->items.size() == 1 ? value_of(scene, &node->items.front().value, key) : std::nullopt;
   if (node->is_number()) return node->real;
   return node->kind == Node::Kind::text ? parse_quantity(node->text, key.dimension).si : std::nullopt;
 }
@@ -21,7 +23,7 @@ std::optional<double> value_of(const Node* node, const Key& key) {
 /// Looks for what an override put into `changed`, beside the tree as it was.
 class Search {
  public:
-  explicit Search(const std::string& path) : path_(path) {}
+  Search(const Scene& scene, const std::string& path) : scene_(scene), path_(path) {}
 
   /// `before`: the counterpart of `changed`, null where there was none.
   std::optional<SceneNumber> in(const Node& changed, const Node* before, const std::string& table) {
@@ -38,7 +40,7 @@ class Search {
       if (leaf) {
         const Key* const key = entries ? nullptr : find_key(table, item.key);
         if (!key || !takes_number(*key)) throw InputError(path_ + ": is no key that takes one number");
-        return SceneNumber{key, outermost_, value_of(old, *key)};
+        return SceneNumber{key, outermost_, value_of(scene_, old, *key)};
       }
       const std::string inner = entries ? table : table.empty() ? item.key : table + "." + item.key;
       if (const auto found = in(item.value, old, inner)) return found;
@@ -48,11 +50,21 @@ class Search {
   }
 
  private:
+  const Scene& scene_;
   const std::string& path_;
   int outermost_ = -1;
 };
 
 }  // namespace
+
+std::optional<double> value_left_out(const Scene& scene, const Key& key) {
+  static const std::pair<const Key*, double ContactLaw::*> k_chosen[] = {
+      {find_key("contact", "alpha"), &ContactLaw::alpha},
+      {find_key("contact", "member_share"), &ContactLaw::member_share}};
+  for (const auto& [chosen, number] : k_chosen)
+    if (&key == chosen) return scene.setup.parameters.contact.*number;
+  return key.fallback.size() == 1 ? std::optional(key.fallback.front()) : std::nullopt;
+}
 
 SceneNumber number_in(const Scene& scene, const std::string& path) {
   const Node before = parse_toml(scene.text, scene.name);
@@ -63,7 +75,7 @@ SceneNumber number_in(const Scene& scene, const std::string& path) {
     const std::string line = error.what(), trial = "--set " + path + "=0: ";
     throw InputError(line.starts_with(trial) ? line.substr(trial.size()) : line);
   }
-  const std::optional<SceneNumber> found = Search(path).in(changed, &before, "");
+  const std::optional<SceneNumber> found = Search(scene, path).in(changed, &before, "");
   if (!found) throw InputError(path + ": is no key that takes one number");
   return *found;
 }

@@ -13,8 +13,12 @@ namespace topple::io {
 struct SceneNumber {
   const Key* key;               ///< not null
   int entry;                    ///< index in the outermost array on the way; -1: there is none
-  std::optional<double> value;  ///< SI, of the scene or its default; absent: it has none
+  std::optional<double> value;  ///< SI, of the scene or value_left_out
 };
+
+/// SI, what the scene takes for a key of one number that it leaves out: its default, or what follows from its
+/// bodies (contact.alpha, contact.member_share). None: it has none.
+std::optional<double> value_left_out(const Scene& scene, const Key& key);
 
 /// `path`: as of --set. Throws InputError when the scene has no such place, or no number can stand there.
 SceneNumber number_in(const Scene& scene, const std::string& path);

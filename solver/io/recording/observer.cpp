@@ -126,7 +126,7 @@ void fill_contacts_between(const Snapshot& at, FrameRow& row) {
 
 void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
   const Model& model = run.setup().model;
-  const std::vector<int>& bearers = run.outcome().bearers();
+  const std::vector<Bearer>& bearers = run.outcome().bearers();
   std::vector<BodyPose> poses;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     poses.push_back(body_pose(model, at.state, static_cast<int>(b)));
@@ -145,7 +145,7 @@ void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
                    .qy = q.y(),
                    .qz = q.z(),
                    .tilt = tilt(pose),
-                   .slide = slide(model, index, pose, bearers[b], bearer_pose(poses, bearers[b])),
+                   .slide = slide(model, index, pose, bearers[b], bearer_pose(poses, bearers[b].body)),
                    .energy = body_energy(run, at, model.bodies[b]),
                    .critical_angle = std::isfinite(critical) ? critical : 0};
     row.level[b] = static_cast<std::uint8_t>(at.state.bodies[b].level);

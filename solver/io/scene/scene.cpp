@@ -66,7 +66,7 @@ Scene understand(Node root, const SceneSource& source, std::string text) {
   read_contact(entry, scene.setup);
   read_planes(entry, scene.setup);
   read_materials_and_sections(entry, scene.setup);
-  read_bodies(entry, scene.setup);
+  const std::vector<Entry> of_body = read_bodies(entry, scene.setup);
   read_anchors(entry, scene.setup);
   read_fixings(entry, scene.setup);
   choose_alpha(entry, scene.setup);
@@ -75,6 +75,7 @@ Scene understand(Node root, const SceneSource& source, std::string text) {
   read_room(entry, scene.setup);
   read_control(entry, scene.setup);
   read_expectations(entry, scene);
+  check_overlap(of_body, scene.setup);  // last: what is wrong besides does not depend on it
   return scene;
 }
 

@@ -375,21 +375,27 @@ void find_overlaps(const Model& model, const std::vector<Vec3>& x, F found) {
         found(model.bodies[b].first_member, -1, s);
 }
 
-/// Bodies that start within each other cannot be told apart by contact.
-void check_overlap(const std::vector<Entry>& entries, const Setup& setup, const State& start) {
+}  // namespace
+
+void check_overlap(const std::vector<Entry>& entries, const Setup& setup) {
   const Model& model = setup.model;
   if (model.bodies.size() < 2) return;
-  find_overlaps(model, start.position, [&](int member, int other_member, int other) {
-    const int body = model.members[member].body;
-    const auto [first, later] = std::minmax(body, other);
-    const auto named = [&](int b, int m) {
-      const std::string& name = model.bodies[b].name;
-      return '"' + name + '"' + (m < 0 || model.bodies[b].solid ? "" : " (" + model.members[m].name + ")");
-    };
-    entries[later < static_cast<int>(entries.size()) ? later : first].fail(
-        "the bodies " + named(body, member) + " and " + named(other, other_member) + " overlap at the start");
-  });
+  find_overlaps(model, start_state(model, setup.starts).position,
+                [&](int member, int other_member, int other) {
+                  const int body = model.members[member].body;
+                  const auto [first, later] = std::minmax(body, other);
+                  const auto named = [&](int b, int m) {
+                    const std::string& name = model.bodies[b].name;
+                    return '"' + name + '"' +
+                           (m < 0 || model.bodies[b].solid ? "" : " (" + model.members[m].name + ")");
+                  };
+                  entries[later < static_cast<int>(entries.size()) ? later : first].fail(
+                      "the bodies " + named(body, member) + " and " + named(other, other_member) +
+                      " overlap at the start");
+                });
 }
+
+namespace {
 
 // Of the last `count` bodies.
 void read_friction(const Entry& entry, int count, Setup& setup) {
@@ -453,7 +459,7 @@ void read_block_model(const Entry& root, const Entry& entry, int count, Setup& s
 
 }  // namespace
 
-void read_bodies(const Entry& root, Setup& setup) {
+std::vector<Entry> read_bodies(const Entry& root, Setup& setup) {
   Model& model = setup.model;
   const Library library(model);
   std::vector<Entry> of_body;
@@ -501,9 +507,8 @@ void read_bodies(const Entry& root, Setup& setup) {
   read_grids(root, library, setup);
   setup.parameters.models.resize(model.bodies.size(), BodyModel::frame);
   setup.parameters.damping.resize(model.bodies.size(), 0);
-  const State start = start_state(model, setup.starts);
-  check_planes(of_body, setup, start);
-  check_overlap(of_body, setup, start);
+  check_planes(of_body, setup, start_state(model, setup.starts));
+  return of_body;
 }
 
 }  // namespace topple::io

@@ -31,7 +31,10 @@ Section read_section(const Entry& entry);
 void read_materials_and_sections(const Entry& root, Setup& setup);
 
 /// [[cabinet]] in the order of the file, then [[frame]], then [[block]], then floors and walls of members.
-void read_bodies(const Entry& root, Setup& setup);
+/// The entry of each body that is furniture.
+std::vector<Entry> read_bodies(const Entry& root, Setup& setup);
+/// Bodies that start within each other cannot be told apart by contact. `entries`: those of read_bodies.
+void check_overlap(const std::vector<Entry>& entries, const Setup& setup);
 
 /// Refuses `model = "planar"` and `restitution` of a body that does not begin as a planar block, and a
 /// restitution by which it would gain energy; after bodies, shakes and anchors.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "solver/contact/contact_law.h"
 #include "solver/math/elementary.h"
 #include "solver/model/excitation.h"
 #include "solver/run/bearer.h"
@@ -110,6 +111,11 @@ std::string why_no_block(const Model& model, int body) {
   return why_not_standing(model, body);
 }
 
+bool slides_first(const Model& model, const Parameters& parameters, int body, const Standing& standing) {
+  const ContactLaw law = gripped(parameters.contact, model.bodies[body].grip);
+  return std::max(law.friction, law.friction_static) < standing.rigid_limit();
+}
+
 double west_acceleration(const Standing& body) {
   return body.gravity * body.rigid_limit();
 }
@@ -140,6 +146,7 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
                behind = standing_towards(model, scene.parameters, b, -shake.direction);
     if (!ahead || !behind) continue;
     const Standing& nearer = ahead->base < behind->base ? *ahead : *behind;
+    if (slides_first(model, scene.parameters, b, nearer)) continue;
     const double limit = out.bodies.empty() ? 0 : out.body.rigid_limit();
     if (!out.bodies.empty() && std::abs(nearer.rigid_limit() - limit) < k_same * limit) {
       out.bodies += ", " + model.bodies[b].name;
@@ -150,7 +157,9 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
     }
   }
   if (out.bodies.empty()) {
-    out.why_not = "no body stands freely on the floor, bears nothing and has edges across the shake";
+    out.why_not =
+        "no body stands freely on the floor, bears nothing, has edges across the shake and lifts before it "
+        "slides";
     return out;
   }
   const Standing& body = out.body;

@@ -22,6 +22,10 @@ struct Criterion {
 /// "vase"". Empty: they do.
 std::string why_no_block(const Model& model, int body);
 
+/// Whether friction gives way before the edge of `standing`, of this body, lifts: it is below b/h. The
+/// criteria are of a block that does not slip.
+bool slides_first(const Model& model, const Parameters& parameters, int body, const Standing& standing);
+
 /// Acceleration at which a rigid block lifts an edge, m/s^2: g b/h (West; Milne 1885).
 double west_acceleration(const Standing& body);
 

@@ -209,6 +209,10 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
       !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_no_criteria(setup, body);
   if (!out.why_not.empty()) return out;
   const Standing at = pushed(setup, body);
+  if (slides_first(setup.model, setup.parameters, body, at)) {
+    out.why_not = "slides before it lifts";
+    return out;
+  }
   out.along_a_line = along_a_line(setup);
   out.corner = evaluation_frequency(at);
   const double median = evaluation_acceleration(at), turn = 2 * k_pi * frequency;

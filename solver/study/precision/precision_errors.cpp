@@ -6,7 +6,6 @@
 
 #include "solver/body/body_pose.h"
 #include "solver/math/rotation.h"
-#include "solver/run/bearer.h"
 #include "solver/run/overturn.h"
 #include "solver/study/precision/convergence.h"
 #include "solver/study/precision/precision.h"
@@ -72,7 +71,7 @@ class Comparison {
     const Course& run = course(reference_.run);
     std::vector<BodyPose> poses;
     for (const Body& body : model.bodies) poses.push_back({body.centre_of_gravity, Quat::Identity()});
-    const std::vector<Burdened> at_start = burdened(model, bearers_of(model), poses);
+    const std::vector<Burdened> at_start = burdened(model, bearers_of(model, plan.scene.setup.starts), poses);
     for (int b = 0; b < model.furniture_total(); ++b) {
       const std::vector<double>& tilt = run.tilt[static_cast<std::size_t>(b)];
       const double peak = tilt.empty() ? 0 : *std::ranges::max_element(tilt);

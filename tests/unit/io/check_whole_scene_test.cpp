@@ -21,6 +21,22 @@ TEST(CheckWholeScene, an_overlap_that_follows_from_a_misspelt_place_is_not_told)
   EXPECT_NE(found.errors[0].find("furniture.b.besides: "), std::string::npos) << found.errors[0];
 }
 
+TEST(CheckWholeScene, what_overlaps_hides_nothing_else) {
+  const std::string text =
+      "topple = 1\n[floor]\n[[wall]]\nname = \"back\"\nat = [-1, 0]\nnormal = [1, 0, 0]\n"
+      "[[furniture]]\nname = \"a\"\nkind = \"chest\"\nat = [2, 0]\n"
+      "[[furniture]]\nname = \"b\"\nkind = \"chest\"\nat = [2.2, 0]\n"
+      "[[block]]\nname = \"c\"\nsize = [0.3, 0.3, 0.3]\nmass = 10\nat = [2.1, 0]\n"
+      "[[fixing]]\nname = \"far\"\nkind = \"L-bracket\"\nbody = \"b\"\nto = \"back\"\n"
+      "[[place]]\nname = \"inside\"\nat = [2, 0]\n";
+  const CheckedScene found = checked(text);
+  ASSERT_EQ(found.errors.size(), 4u) << testing::PrintToString(found.errors);
+  EXPECT_NE(found.errors[0].find("furniture.b: the bodies"), std::string::npos) << found.errors[0];
+  EXPECT_NE(found.errors[1].find("block.c: the bodies"), std::string::npos) << found.errors[1];
+  EXPECT_NE(found.errors[2].find("fixing.far.to: finds no point"), std::string::npos) << found.errors[2];
+  EXPECT_NE(found.errors[3].find("place.inside.at: lies inside"), std::string::npos) << found.errors[3];
+}
+
 TEST(CheckWholeScene, ten_thousand_pieces_are_refused_in_one_line) {
   std::string text = "topple = 1\n[floor]\n";
   for (int k = 0; k < 10000; ++k)

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "solver/io/edit/edit_text.h"
+#include "solver/io/edit/scene_number.h"
+
 namespace topple::io {
 namespace {
 
@@ -34,6 +39,18 @@ TEST(SceneDifference, both_values_are_told_in_the_unit_of_the_key) {
   EXPECT_EQ(found[2].key, "cabinet.walled.yaw");
   EXPECT_EQ(*found[2].a, "0 deg");
   EXPECT_EQ(*found[2].b, "1 deg");
+}
+
+TEST(SceneDifference, what_is_chosen_where_it_is_left_out_is_what_the_run_takes) {
+  const Scene chosen = load_scene("refrigerator"),
+              stated = load_scene("refrigerator", {"contact.alpha=9 MN"});
+  const double alpha = chosen.setup.parameters.contact.alpha;
+  EXPECT_GT(alpha, 1e4);  // not the 50 kgf of a scene without a floor
+  EXPECT_EQ(number_in(chosen, "contact.alpha").value, alpha);
+  const auto found = differences(chosen, stated);
+  const auto of_alpha = std::ranges::find(found, "contact.alpha", &SceneDifference::key);
+  ASSERT_NE(of_alpha, found.end());
+  EXPECT_EQ(*of_alpha->a, value_text(*find_key("contact", "alpha"), alpha));
 }
 
 TEST(SceneDifference, an_entry_that_one_has_alone_is_one_line) {

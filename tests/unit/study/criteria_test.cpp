@@ -70,6 +70,15 @@ Criteria of(const std::string& scene_name, const std::string& x, const std::stri
 
 const std::string k_x = "shake.1.frequency=0.2..5:5", k_y = "shake.1.amplitude=1..10:5";
 
+// b/h is 0.181.
+TEST(Criteria, there_are_none_of_a_body_that_slides_before_it_lifts) {
+  const Criteria slides = of("paper-a", k_x, k_y, {"contact.friction=0.18"});
+  EXPECT_TRUE(slides.list.empty());
+  EXPECT_NE(slides.why_not.find("lifts before it slides"), std::string::npos) << slides.why_not;
+  EXPECT_FALSE(of("paper-a", k_x, k_y, {"contact.friction=0.182"}).list.empty());
+  EXPECT_FALSE(of("paper-a", k_x, k_y, {"contact.friction=0.1", "contact.friction_static=0.2"}).list.empty());
+}
+
 TEST(Criteria, curves_are_in_the_units_of_the_axes) {
   const Criteria found = of("paper-a", k_x, k_y);
   EXPECT_EQ(found.why_not, "");

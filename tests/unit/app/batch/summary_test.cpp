@@ -120,10 +120,9 @@ TEST_F(SummaryTest, what_a_slight_change_may_topple_is_told) {
   s["simulated_s"] = 10;
   Json& body = s["bodies"][0];
   body["overturned"] = false;
-  body["critical_tilt_deg"] = 10;
-  body["peak_tilt_deg"] = 7.9;
+  body["peak_critical_share"] = 0.79;
   EXPECT_EQ(summary_table(s).find("a slight change"), std::string::npos);
-  body["peak_tilt_deg"] = 9.5;
+  body["peak_critical_share"] = 0.95;
   EXPECT_NE(summary_table(s).find(
                 "free: came to 95 % of its critical angle, so that a slight change may topple it"),
             std::string::npos)

@@ -210,6 +210,9 @@ TEST_F(FurnishTest, a_new_room_has_no_run_before_it) {
   shake();
   EXPECT_TRUE(shell_->session()->viewer().shows_earlier());
   press(render::key::f2);
+  shake();  // the same once more
+  EXPECT_TRUE(shell_->session()->viewer().shows_earlier());
+  press(render::key::f2);
   view().begin_new_room();
   frames(2);
   shake();

@@ -10,7 +10,6 @@
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
 #include "app/support/terms.h"
-#include "solver/run/bearer.h"
 #include "solver/run/overturn.h"
 #include "unit/app/live.h"
 
@@ -50,7 +49,7 @@ loads = [{ node = 1, force = ["20 N", 0, "-10 N"] }]
   io::FrameRow row;
 };
 
-const std::vector<int> k_on_floor{-1};
+const std::vector<Bearer> k_on_floor{{-1, Vec3::Zero()}};
 
 // P L at the clamp, nothing at the tip; P and N all along. The tip turns by 1.5 mrad: 2e-3 of P more in N.
 TEST(Subject, section_forces_of_a_cantilever_are_those_of_theory) {
@@ -134,7 +133,7 @@ TEST(Subject, a_body_has_the_energy_and_the_angular_velocity_of_its_state) {
       spin = (r * scene.setup.model.bodies[0].inertia * r.transpose()).inverse() * momentum.angular_momentum;
       kinetic = run.state().energy.kinetic;
     }
-    const std::vector<int> bearers = bearers_of(scene.setup.model);
+    const std::vector<Bearer> bearers = bearers_of(scene.setup.model, scene.setup.starts);
     const FrameContext now{scene.setup.model, scene.setup.parameters.gravity, bearers, rows[1], &rows[0],
                            &rows[2]};
     EXPECT_GT(kinetic, 0.01);

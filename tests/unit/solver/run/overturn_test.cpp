@@ -179,11 +179,12 @@ TEST(Overturn, bodies_without_a_base_or_a_floor_or_with_supports_of_the_base_can
 TEST(Overturn, slide_is_the_horizontal_travel_of_the_base) {
   const Standing s = standing();
   const Vec3 centre = s.model.bodies[0].centre_of_gravity;
-  EXPECT_NEAR(slide(s.model, 0, {centre + Vec3(0.3, -0.4, 2), Quat::Identity()}, -1, {}), 0.5, 1e-12);
+  const Bearer bearer = bearers_of(s.model, {s.start})[0];
+  EXPECT_NEAR(slide(s.model, 0, {centre + Vec3(0.3, -0.4, 2), Quat::Identity()}, bearer, {}), 0.5, 1e-12);
   // turning about the base's middle does not slide it
   const Quat turn = exp_quaternion(Vec3(0.2, 0.1, 1));
   const Vec3 base = s.model.bodies[0].base_centre;
-  EXPECT_NEAR(slide(s.model, 0, {base + turn * (centre - base), turn}, -1, {}), 0, 1e-12);
+  EXPECT_NEAR(slide(s.model, 0, {base + turn * (centre - base), turn}, bearer, {}), 0, 1e-12);
 }
 
 BlockSpec piece(const std::string& name, double height, const Vec3& at) {
@@ -202,16 +203,18 @@ TEST(Overturn, slide_of_what_stands_on_another_body_is_along_that) {
   add_block(model, piece("beside", 0.5, {1, 0, 0}));
   add_block(model, piece("hangs", 0.5, {1, 0, 0.6}));
   model.planes.push_back(ground());
-  const Outcome outcome(model);
-  EXPECT_EQ(outcome.bearers(), (std::vector{-1, 0, -1, -1}));
+  const std::vector<Bearer> bearers = bearers_of(model, std::vector<BodyStart>(4));
+  for (const int b : {0, 2, 3}) EXPECT_EQ(bearers[b].body, -1) << b;
+  ASSERT_EQ(bearers[1].body, 0);
   // carried along as the pedestal tips and walks, and then 30 mm along its top
   const Quat turn = exp_quaternion(Vec3(0.2, 0.1, 1));
   const Vec3 walked(0.3, -0.2, 0.05);
   const auto moved = [&](int body, const Vec3& along) {
     return BodyPose{walked + turn * (model.bodies[body].centre_of_gravity + along), turn};
   };
-  EXPECT_NEAR(slide(model, 1, moved(1, Vec3::Zero()), 0, moved(0, Vec3::Zero())), 0, 1e-12);
-  EXPECT_NEAR(slide(model, 1, moved(1, {0.018, 0.024, 0.1}), 0, moved(0, Vec3::Zero())), 0.03, 1e-12);
+  EXPECT_NEAR(slide(model, 1, moved(1, Vec3::Zero()), bearers[1], moved(0, Vec3::Zero())), 0, 1e-12);
+  EXPECT_NEAR(slide(model, 1, moved(1, {0.018, 0.024, 0.1}), bearers[1], moved(0, Vec3::Zero())), 0.03,
+              1e-12);
 }
 
 // Three blocks on each other that tilt as one, then without the topmost, which lies on the floor.
@@ -245,8 +248,14 @@ TEST(Overturn, what_a_body_bears_counts_while_it_is_above_its_base) {
     }
     return std::atan2(0.15 - moment.x() / sum, moment.z() / sum - base);
   };
-  const std::vector<int> bearers = bearers_of(model);
-  ASSERT_EQ(bearers, (std::vector{-1, 0, 1}));
+  BodyStart leaning;
+  leaning.pivot = pivot;
+  leaning.rotation = k_tilt * Vec3::UnitY();
+  const std::vector<Bearer> bearers = bearers_of(model, {leaning, leaning, leaning});
+  for (const int b : {0, 1, 2}) {
+    ASSERT_EQ(bearers[b].body, b - 1);
+    EXPECT_LT((bearers[b].place - model.bodies[b].base_centre).norm(), 1e-12) << b;
+  }
   const std::vector<Burdened> all = burdened(model, bearers, poses);
   EXPECT_NEAR(critical_angle(model, 0, poses[0], all[0]), critical(std::vector{20., 30., 5.}), 1e-12);
   EXPECT_NEAR(all[0].mass, 55, 1e-12);
@@ -256,6 +265,11 @@ TEST(Overturn, what_a_body_bears_counts_while_it_is_above_its_base) {
   const std::vector<Burdened> left = burdened(model, bearers, poses);
   EXPECT_NEAR(critical_angle(model, 0, poses[0], left[0]), critical(std::vector{20., 30.}), 1e-12);
   EXPECT_NEAR(left[1].mass, 30, 1e-12);
+  // both upper ones lie beyond the head of the lowest, which lies on its side
+  const Quat quarter = exp_quaternion(k_pi / 2 * Vec3::UnitY());
+  for (const int b : {0, 1, 2}) poses[b] = {Vec3(1.2 * b, 0, 0.15), quarter};
+  const std::vector<Burdened> lying = burdened(model, bearers, poses);
+  for (const int b : {0, 1, 2}) EXPECT_EQ(lying[b].mass, model.bodies[b].mass) << b;
 }
 
 struct Observed {
@@ -266,7 +280,7 @@ struct Observed {
 
 Observed watch(Simulation& sim, double seconds) {
   Observed o;
-  Outcome outcome(sim.model);
+  Outcome outcome(sim.model, std::vector<BodyStart>(sim.model.bodies.size()));
   std::vector<SectionForces> sections;
   const int steps = static_cast<int>(std::lround(seconds / sim.parameters.time_step));
   for (int i = 0; i <= steps; ++i) {
@@ -391,7 +405,7 @@ TEST(Overturn, uplift_and_impact_count_from_the_stated_angle_on) {
       }
       return forces;
     };
-    Outcome outcome(s.model);
+    Outcome outcome(s.model, {s.start});
     std::vector<Event> events;
     std::vector<SectionForces> sections;
     section_forces(sim.model, sim.state, sections);
@@ -458,7 +472,7 @@ TEST(Overturn, slow_push_lifts_a_side_at_g_b_over_h_and_topples_just_above) {
     push.duration = 100;
     p.shakes.push_back(push);
     Simulation sim(s.model, {s.start}, p, true);
-    Outcome outcome(sim.model);
+    Outcome outcome(sim.model, std::vector<BodyStart>(sim.model.bodies.size()));
     std::vector<SectionForces> sections;
     std::vector<Event> events;
     double lifted_at = 0, since = 0;
@@ -505,7 +519,7 @@ TEST(Overturn, members_below_bear_the_sides_that_they_touch_wherever_the_body_st
       const Element& element = model.elements[e];
       const Vec3 x =
           (1 - place) * model.node_position[element.node[0]] + place * model.node_position[element.node[1]];
-      Outcome outcome(model);
+      Outcome outcome(model, std::vector<BodyStart>(model.bodies.size()));
       std::vector<Event> events;
       const MemberForce force{{e, body.element_count}, place, 0.5, 0.1, Vec3(0, 0, weight)};
       outcome.observe(model, {}, state, {}, {force}, sections, events);
@@ -529,7 +543,7 @@ TEST(Overturn, peak_stress_is_at_the_corner_where_normal_force_and_both_moments_
   const Vec3 moment(7, -11, 13);
   const double force = -900, half = 0.015;
   sections[3] = {Vec3(force, 0, 0), moment};
-  Outcome outcome(s.model);
+  Outcome outcome(s.model, {s.start});
   std::vector<Event> events;
   outcome.observe(s.model, {}, state, {}, {}, sections, events);
   const double normal = std::abs(force) / post.area + std::abs(moment.y()) * half / post.iy +
