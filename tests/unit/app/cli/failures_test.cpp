@@ -45,8 +45,11 @@ TEST_F(FailuresTest, are_reported_and_are_gone_on_the_other_side_of_their_limit)
     const Ended ended = topple(good);
     EXPECT_EQ(ended.code, 0) << ended.err;
     const auto summary = json_of(ended.out);
-    for (const auto& warning : summary.at("warnings"))  // of steel that is given no yield
-      EXPECT_TRUE(warning.get<std::string>().starts_with("the stress in body ")) << ended.err;
+    for (const auto& warning : summary.at("warnings")) {  // of steel that is given no yield, of soft contacts
+      const auto words = warning.get<std::string>();
+      EXPECT_TRUE(words.starts_with("the stress in body ") || words.starts_with("contact.alpha = "))
+          << ended.err;
+    }
   }
 }
 
