@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "app/batch/run_warnings.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
 #include "solver/contact/proximity.h"
+#include "solver/io/scene/fixing_kinds.h"
 #include "solver/reduced/tipping.h"
 #include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
@@ -55,6 +57,16 @@ void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::st
                     "gives way before the anchor does; at a corner it is stiffer",
                     anchor.name, body.name, model.members[at.member].name));
   }
+}
+
+void warn_of_stoppers(const Model& model, std::vector<std::string>& list) {
+  std::set<int> told;
+  for (const Anchor& anchor : model.anchors)
+    if (anchor.fixing == io::traits(io::FixingKind::stopper).word && told.insert(anchor.body).second)
+      list.push_back(
+          fmt::format("the wedges under \"{}\" push without friction: it slides, and may fall, "
+                      "earlier than on wedges of rubber",
+                      model.bodies[anchor.body].name));
 }
 
 /// Where a wall pushes a body away as the run begins.
@@ -116,43 +128,39 @@ double rounded_up(double value) {
 
 /// Greatest part of the acceleration that tips a body on a rigid floor by which it tips earlier here, as far
 /// as its weight on one edge tells, or exactly where it stands freely.
-std::optional<double> early_tipping(const Setup& setup) {
-  const Parameters& p = setup.parameters;
-  std::optional<double> early = early_uplift(setup.model, p.contact, p.gravity);
+std::optional<double> early_tipping(const Model& model, const Parameters& p) {
+  std::optional<double> early = early_uplift(model, p.contact, p.gravity);
   if (!early || *early <= k_early) return early;
-  for (int b = 0; b < setup.model.furniture_total(); ++b) {
-    if (!study::why_not_standing(setup.model, b).empty()) continue;
-    const study::Standing body = study::standing(setup.model, p, b);
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    if (!study::why_not_standing(model, b).empty()) continue;
+    const study::Standing body = study::standing(model, p, b);
     early = std::max(*early, 1 - study::tipping_limit(body, p.contact) / body.rigid_limit());
   }
   return early;
 }
 
 /// Least alpha, N, with which that part is k_hardly.
-double alpha_for_tipping(const Setup& setup) {
-  const Parameters& p = setup.parameters;
-  const double early = early_uplift(setup.model, p.contact, p.gravity).value_or(0);
+double alpha_for_tipping(const Model& model, const Parameters& p) {
+  const double early = early_uplift(model, p.contact, p.gravity).value_or(0);
   double alpha = p.contact.alpha * std::pow(early / k_hardly, p.contact.q);
-  for (int b = 0; b < setup.model.furniture_total(); ++b)
-    if (study::why_not_standing(setup.model, b).empty())
-      alpha =
-          std::max(alpha, study::alpha_for_tipping(study::standing(setup.model, p, b), p.contact, k_hardly));
+  for (int b = 0; b < model.furniture_total(); ++b)
+    if (study::why_not_standing(model, b).empty())
+      alpha = std::max(alpha, study::alpha_for_tipping(study::standing(model, p, b), p.contact, k_hardly));
   return alpha;
 }
 
 }  // namespace
 
-std::string soft_contact_warning(const Setup& setup) {
-  const Parameters& p = setup.parameters;
-  const std::optional<double> early = early_tipping(setup);
-  const std::optional<double> rigid = rigid_alpha(setup.model, p.contact, p.gravity);
+std::string soft_contact_warning(const Model& model, const Parameters& p) {
+  const std::optional<double> early = early_tipping(model, p);
+  const std::optional<double> rigid = rigid_alpha(model, p.contact, p.gravity);
   if (!early || !rigid || *early <= k_early) return "";
   return fmt::format(
       "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
       "acceleration than on a rigid floor; {:.0f} kgf keeps that below {:g} %; no alpha at all takes "
       "{:.0f} kgf, with which it lands as on a rigid floor too",
       p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
-      rounded_up(alpha_for_tipping(setup) / k_standard_gravity), 100 * k_hardly,
+      rounded_up(alpha_for_tipping(model, p) / k_standard_gravity), 100 * k_hardly,
       rounded_up(*rigid / k_standard_gravity));
 }
 
@@ -180,9 +188,10 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   if (setup.run.analysis != Analysis::dynamic) return list;
   const State start = start_state(setup.model, setup.starts);
   warn_of_anchors(setup, start, list);
+  warn_of_stoppers(setup.model, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
-  for (std::string words : {soft_contact_warning(setup), bending_warning(setup)})
+  for (std::string words : {soft_contact_warning(setup.model, setup.parameters), bending_warning(setup)})
     if (!words.empty()) list.push_back(std::move(words));
   warn_of_shakes(setup.parameters.shakes, list);
   return list;

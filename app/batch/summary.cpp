@@ -76,6 +76,7 @@ ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, c
                              : ordered_json(integrator_of(o.level.value_or(ModelLevel::frame), frames))},
           {"models", models(o, frames)},
           {"not_planar", not_planar(setup, o, index)},
+          {"friction", number(body.grip * setup.parameters.contact.friction)},
           {"overturned", o.beyond_since.has_value()},
           {"overturn_time_s", number(o.beyond_since)},
           {"first_beyond_critical_s", number(o.first_beyond)},
@@ -88,8 +89,8 @@ ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, c
           {"impact_intervals_s", intervals(o.impact_times)},
           {"peak_tilts_deg", list(o.peak_tilts, 1 / k_degrees)},
           {"final_tilt_deg", number(o.tilt * k_degrees)},
-          {"critical_tilt_deg", number(o.critical_of_peak * k_degrees)},
-          {"peak_critical_share", slides ? number(o.peak_share) : ordered_json(nullptr)},
+          {"critical_tilt_deg", number(o.peak.critical * k_degrees)},
+          {"peak_critical_share", slides ? number(o.peak.share) : ordered_json(nullptr)},
           {"peak_slide_m", slides ? number(o.peak_slide) : ordered_json(nullptr)},
           {"final_slide_m", slides ? number(o.slide) : ordered_json(nullptr)},
           {"final_velocity_m_s", vector_json(momentum.velocity)},
@@ -257,7 +258,8 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["static"] = load_steps_json(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = run_warnings(run);
-  if (const std::string soft = soft_contact_warning(run.setup()); !soft.empty() && !is_static(run.setup()))
+  if (const std::string soft = soft_contact_warning(run.setup().model, run.setup().parameters);
+      !soft.empty() && !is_static(run.setup()))
     out["warnings"].push_back(soft);
   return out;
 }

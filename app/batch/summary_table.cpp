@@ -63,6 +63,20 @@ std::string static_head(const ordered_json& s) {
   return out + "\n";
 }
 
+// Of pieces that have another one.
+std::string own_frictions(const ordered_json& s) {
+  constexpr std::size_t k_most = 3;
+  std::string words;
+  std::size_t count = 0;
+  for (const ordered_json& b : s["bodies"])
+    if (b.contains("friction") && b["friction"] != s["contact"]["friction"] && ++count <= k_most)
+      words += fmt::format("{}{} {:.6g}", count > 1 ? ", " : "", b["name"].get<std::string>(),
+                           b["friction"].get<double>());
+  return count == 0
+             ? ""
+             : " (" + words + (count > k_most ? fmt::format(" and {} more", count - k_most) : "") + ")";
+}
+
 // What moved bodies on the levels that they were on.
 std::string integrators(const ordered_json& s) {
   std::set<ModelLevel> levels;
@@ -87,8 +101,6 @@ std::string integrators(const ordered_json& s) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-constexpr int k_many_impacts = 10;  // each enlarges what differs before it
-
 std::string allowed_error(const ordered_json& body, const ordered_json& change) {
   const ordered_json& estimate = change["error_estimate"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
@@ -98,10 +110,11 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
   const std::string bounds = may_strike ? " until it strikes something, from which a frame springs back"
-                             : impacts > k_many_impacts
-                                 ? fmt::format(" before its {} impacts, which enlarge that", impacts)
-                             : impacts > 0 || !body["first_beyond_critical_s"].is_null() ? " until it lands"
-                                                                                         : "";
+                             : impacts > 0
+                                 ? fmt::format(" before its {} impact{}, which enlarge{} that", impacts,
+                                               impacts > 1 ? "s" : "", impacts > 1 ? "" : "s")
+                             : !body["first_beyond_critical_s"].is_null() ? " until it lands"
+                                                                          : "";
   return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(), bounds);
 }
 
@@ -153,11 +166,11 @@ std::string dynamic_head(const ordered_json& s) {
                      s["newton_iterations"].get<long>());
   const ordered_json& share = s["contact"]["member_share"];
   out += fmt::format(
-      "contact: {}, alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}{}\n",
+      "contact: {}, alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}{}{}\n",
       s["contact"]["law"].get<std::string>(), s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
       share.is_null() || share == 1 ? ""
                                     : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
-      s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>(),
+      s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>(), own_frictions(s),
       s["contact"]["restitution"].is_null()
           ? ""
           : fmt::format(", restitution {:.6g}", s["contact"]["restitution"].get<double>()));
@@ -188,7 +201,8 @@ std::string lately_line(const ordered_json& b, const ordered_json& end) {
 
 // Of a body that a slight change may topple, or keep from it.
 std::string chance_line(const ordered_json& b) {
-  constexpr double k_near = 0.8;                                             // of the critical angle
+  constexpr int k_many_impacts = 10;  // each enlarges what differs before it
+  constexpr double k_near = 0.8;      // of the critical angle
   const ordered_json told = b.value("peak_critical_share", ordered_json());  // older recordings lack it
   if (told.is_null()) return "";
   const auto share = told.get<double>();

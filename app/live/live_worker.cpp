@@ -8,6 +8,7 @@
 
 #include "app/batch/load_steps.h"
 #include "app/batch/run_warnings.h"
+#include "app/batch/scene_warnings.h"
 #include "app/batch/summary.h"
 #include "app/picture/thinning.h"
 #include "app/support/clock.h"
@@ -147,7 +148,11 @@ void LiveWorker::step_once() {
   record(observer_.last(*run_));
   going_ = false;
   status_.kind = LiveStatus::Kind::over;
-  status_.message = fmt::format("{}", fmt::join(run_warnings(*run_), "; "));
+  std::vector<std::string> warnings = run_warnings(*run_);
+  if (std::string soft = soft_contact_warning(run_->setup().model, run_->parameters());
+      !soft.empty() && !is_static(run_->setup()))
+    warnings.push_back(std::move(soft));
+  status_.message = fmt::format("{}", fmt::join(warnings, "; "));
 }
 
 // Steps until the next report is due, or the run is ahead of its pace.

@@ -21,6 +21,15 @@ std::string plain(double value) {
   return value < 1e5 ? short_shown(value, 5) : shown(value, 0);
 }
 
+/// Of all, and of pieces that have their own.
+std::string frictions(const Setup& setup) {
+  const double of_all = setup.parameters.contact.friction;
+  std::string words = short_shown(of_all);
+  for (const Body& body : setup.model.bodies)
+    if (body.grip != 1) words += ", " + body.name + " " + short_shown(body.grip * of_all);
+  return words;
+}
+
 struct LevelPhrase {
   ModelLevel kind;
   const Phrase& phrase;
@@ -111,7 +120,7 @@ std::string assumptions_section(ReportPage& page) {
   if (!model.planes.empty()) list.push_back(page.say(words::k_rigid_floor));
   if (model.furniture_total() < static_cast<int>(model.bodies.size()))
     list.push_back(page.say(words::k_beam_floor));
-  list.push_back(page.say(words::k_friction, short_shown(setup.parameters.contact.friction)));
+  list.push_back(page.say(words::k_friction, frictions(setup)));
   if (some([](const Material& m) { return m.yield > 0; }))
     list.push_back(
         page.say(words::k_frames_plastic, some([](const Material& m) { return m.fracture_strain > 0; })
@@ -143,7 +152,7 @@ std::string settings_section(ReportPage& page) {
        fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
       {page.say(words::k_member_share), short_shown(p.contact.member_share)},
       {page.say(words::k_q), short_shown(p.contact.q)},
-      {page.say(words::k_mu), short_shown(p.contact.friction)}};
+      {page.say(words::k_mu), frictions(page.report().scene->setup)}};
   if (traits(p.contact).has_restitution) {
     rows.push_back({page.say(words::k_restitution), short_shown(p.contact.restitution)});
     rows.push_back({page.say(words::k_normal_speed), short_shown(p.contact.normal_speed) + " m/s"});

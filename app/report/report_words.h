@@ -352,10 +352,8 @@ inline constexpr Phrase k_beam_floor{
     "back.",
     "梁でモデル化した床・壁は変形する。その端部は建物とともに動き、家具から建物への影響は考慮しない。"};
 inline constexpr Phrase k_friction{
-    "Contact is a spring against penetration with one coefficient of friction, {0}, for all surfaces "
-    "and at all "
-    "speeds.",
-    "接触は貫入に抵抗するばねで表し、摩擦係数はすべての面・すべての速度で一定（{0}）とする。"};
+    "Contact is a spring against penetration with one coefficient of friction at all speeds, {0}.",
+    "接触は貫入に抵抗するばねで表し、摩擦係数は速度によらず一定（{0}）とする。"};
 inline constexpr Phrase k_frames_elastic{"The material does not yield or break.",
                                          "材料は降伏も破断もしない。"};
 inline constexpr Phrase k_frames_plastic{

@@ -49,9 +49,13 @@ std::string fit_in_words(const study::OverturnPlan& plan, const study::OverturnM
   if (!at.fit) return where + " none, " + at.why_not + "\n";
   const auto line_of = [](const study::Lognormal& fit, const std::string& what, const std::string& unit) {
     const study::Interval median = fit.median_interval(), beta = fit.beta_interval();
-    return fmt::format("  {} median {:.4g}{} (95 %: {:.4g} to {:.4g}), beta {:.3g} ({:.2g} to {:.2g})\n",
-                       what, fit.median, unit.empty() ? "" : " " + unit, median.low, median.high, fit.beta,
-                       beta.low, beta.high);
+    const double scatter = fit.scatter();
+    return fmt::format(
+        "  {} median {:.4g}{} (95 %: {:.4g} to {:.4g}), beta {:.3g} ({:.2g} to {:.2g}){}\n", what, fit.median,
+        unit.empty() ? "" : " " + unit, median.low, median.high, fit.beta, beta.low, beta.high,
+        scatter > 1
+            ? fmt::format("; shares scatter {:.2g} times as far as by chance, and so do these", scatter)
+            : "");
   };
   std::string text = where + "\n" + line_of(*at.fit, along.key + ":", along.unit);
   const std::vector<study::FloorPeak> peaks = floor_peaks(plan, map, map.own_column);

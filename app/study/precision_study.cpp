@@ -57,10 +57,13 @@ std::string default_in_words(const study::PrecisionPlan& plan, const study::Prec
       if (const auto& off = results.references.front().uncertainty[index(measure)])
         text += fmt::format(", the reference itself by {}", percent(*off));
       text += "; ";
-      if (cheaper) text += fmt::format("others are as exact for {:.2g} of its cost", 1 / place->cost_ratio);
+      const char* const others =
+          own.errors[index(study::Measure::peak_stress)] ? "others with stresses" : "others";
+      if (cheaper)
+        text += fmt::format("{} are as exact for {:.2g} of its cost", others, 1 / place->cost_ratio);
       if (nearer)
-        text += fmt::format("{} {:.2g} times nearer for all of it", cheaper ? "," : "others are",
-                            place->error_ratio);
+        text += fmt::format("{} {:.2g} times nearer for all of it",
+                            cheaper ? "," : fmt::format("{} are", others), place->error_ratio);
       text += cheaper || nearer ? "\n" : "no other is as exact for less, or nearer for the same\n";
     }
   }

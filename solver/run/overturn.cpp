@@ -265,10 +265,9 @@ void Outcome::take_pose(const Model& model, std::span<const BodyPose> poses, con
   o.slide = topple::slide(model, body, pose, bearers_[b], bearer_pose(poses, bearers_[b].body));
   o.peak_slide = std::max(o.peak_slide, o.slide);
   o.critical = critical_angle(model, body, pose, all);
-  if (const double share = o.tilt / o.critical; !o.beyond_since && share >= o.peak_share) {
-    o.peak_share = share;
-    o.critical_of_peak = o.critical;
-  }
+  const double share = o.tilt / o.critical;
+  BodyOutcome::Nearest& nearest = o.beyond_since ? o.beyond : o.peak;
+  if (share >= nearest.share) nearest = {share, o.critical};
 }
 
 void Outcome::observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
@@ -292,6 +291,8 @@ void Outcome::observe_pose(const Model& model, const State& state, std::span<con
                       .body = static_cast<int>(b),
                       .value = o.tilt});
   } else if (beyond <= 0) {
+    if (o.beyond.share > o.peak.share) o.peak = o.beyond;  // it has come back
+    o.beyond = {};
     o.beyond_since.reset();
   }
   if (o.tilt <= k_fallen)
@@ -315,8 +316,8 @@ std::array<Outcome::Course, 2> Outcome::courses(const Model& model, const State&
   out[0] = {-axis.z(), -turning.cross(axis).z()};
   if (bearers_[b].body >= 0) return out;
   const Vec3 arm = s.rotation * (model.bodies[b].base_centre - model.bodies[b].centre_of_gravity);
-  const Vec2 way = (s.position + arm - bearers_[b].place).head<2>(),
-             speed = (s.velocity + turning.cross(arm)).head<2>();
+  const Eigen::Vector2d way = (s.position + arm - bearers_[b].place).head<2>(),
+                        speed = (s.velocity + turning.cross(arm)).head<2>();
   const double slid = way.norm();
   out[1] = {slid, slid > 0 ? way.dot(speed) / slid : speed.norm()};
   return out;
@@ -360,9 +361,14 @@ void Outcome::observe_sides(const State& state, double weight, std::size_t b, st
     const double carried = side_force_[b][i];
     if (!side.open && carried + inner_force_[b][i] < k_uplift * weight &&
         total_force_[b] > k_closing * weight)
-      side = {.open = true, .counts = false, .since = state.time, .vertical = o.vertical};
+      side = {.open = true,
+              .counts = false,
+              .borne_otherwise = state.step == 0,
+              .since = state.time,
+              .vertical = o.vertical};
     if (!side.open) continue;
-    if (!side.counts && !o.beyond_since && (o.vertical - side.vertical).norm() > k_uplift_angle) {
+    if (!side.counts && !side.borne_otherwise && !o.beyond_since &&
+        (o.vertical - side.vertical).norm() > k_uplift_angle) {
       side.counts = true;
       if (!o.first_uplift) o.first_uplift = side.since;
       add(Event::Kind::uplift, side.since);

@@ -90,9 +90,13 @@ struct LevelChange {
 struct BodyOutcome {
   double tilt = 0, peak_tilt = 0;
   double slide = 0, peak_slide = 0;
-  double critical = 0;                 ///< critical angle in the present direction
-  double peak_share = 0;               ///< greatest tilt over critical angle until it overturns
-  double critical_of_peak = 0;         ///< critical angle then
+  double critical = 0;  ///< critical angle in the present direction
+  /// Greatest tilt over critical angle, and the critical angle then.
+  struct Nearest {
+    double share = 0, critical = 0;
+  };
+  Nearest peak;                        ///< until it overturned
+  Nearest beyond;                      ///< since it has been beyond the critical angle: it may come back
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_beyond;  ///< it came there first, whether it came back or not
   std::optional<double> first_uplift;
@@ -117,6 +121,7 @@ struct BodyOutcome {
   struct Side {
     bool open = false;             ///< it has let go and not closed again
     bool counts = false;           ///< the body has turned by k_uplift_angle since
+    bool borne_otherwise = false;  ///< from the first state on, as by a wedge: it has not let go
     double since = 0;              ///< s, when it let go
     Vec3 vertical = Vec3::Zero();  ///< then, in the body's axes
   };

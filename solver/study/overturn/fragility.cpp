@@ -81,6 +81,14 @@ double Lognormal::probability(double intensity) const {
   return normal(std::log(intensity / median) / beta);
 }
 
+double Lognormal::scatter() const {
+  if (freedom <= 0) return 1;
+  // quantile 0.999 of chi^2 (E. B. Wilson and M. M. Hilferty, 1931)
+  const double part = 2. / (9 * freedom);
+  const double most_by_chance = freedom * std::pow(1 - part + 3.0902 * std::sqrt(part), 3);
+  return deviance > most_by_chance ? std::sqrt(deviance / freedom) : 1;
+}
+
 Interval Lognormal::median_interval() const {
   const double factor = std::exp(k_95 * median_error / median);
   return {median / factor, median * factor};

@@ -27,6 +27,8 @@ struct Lognormal {
   /// 95 % by the standard errors of the logarithms of both.
   Interval median_interval() const;
   Interval beta_interval() const;
+  /// How many times as far as by chance shares scatter about the curve; 1: where chance explains it.
+  double scatter() const;
 };
 
 struct Fragility {

@@ -101,12 +101,6 @@ void draw_records(const FragilityPlan& plan, const LevelsOfRecords& records, Fra
   curve.beta_of_records = middle_of(std::move(betas));
 }
 
-/// Quantile 0.999 of chi^2 with this freedom (E. B. Wilson and M. M. Hilferty, 1931).
-double most_by_chance(int freedom) {
-  const double part = 2. / (9 * freedom);
-  return freedom * std::pow(1 - part + 3.0902 * std::sqrt(part), 3);
-}
-
 /// A median beyond the levels is none that runs tell.
 void drop_extrapolated(const FragilityPlan& plan, FragilityCurve& curve, const char* verb) {
   if (!curve.fit.fit) return;
@@ -158,8 +152,7 @@ FragilityCurve curve_of(const FragilityPlan& plan, const LevelsOfRecords& record
   drop_extrapolated(plan, curve, verb);
   if (curve.fit.fit) {
     Lognormal fit = *curve.fit.fit;
-    if (fit.freedom > 0 && fit.deviance > most_by_chance(fit.freedom))
-      curve.scatter = std::sqrt(fit.deviance / fit.freedom);
+    curve.scatter = fit.scatter();
     fit.median_error *= curve.scatter, fit.beta_error *= curve.scatter;
     const Interval median = fit.median_interval();
     curve.beta_of_runs = fit.beta_interval();

@@ -206,7 +206,7 @@ class Chart {
     const std::string range = ranges(measure, cost);
     if (range.empty())
       return out + at.axes() + "unset tics\nset xrange [1:2]\nset yrange [1:2]\n" +
-             k_sheet.label("no run of this scene has it", at.left + 30, at.top - 60, k_grey) +
+             k_sheet.label("none within what is compared", at.left + 30, at.top - 60, k_grey) +
              "plot NaN notitle\nunset label\nset xtics\nset ytics\n";
     Plot plot;
     plot.layers = {std::string("$front with lines ") + k_front_style + " notitle"};

@@ -311,14 +311,16 @@ TEST(Overturn, block_released_below_the_critical_angle_returns_and_above_it_fall
       EXPECT_FALSE(returned.outcome.beyond_since);
       EXPECT_GE(returned.outcome.impacts, 1);
       EXPECT_LT(returned.final_tilt, k_edge_angle);
-      EXPECT_NEAR(returned.outcome.critical_of_peak, k_edge_angle, 1e-3);  // its frame bends by less
+      EXPECT_NEAR(returned.outcome.peak.share, returned.outcome.peak_tilt / k_edge_angle, 1e-2);
+      EXPECT_NEAR(returned.outcome.peak.critical, k_edge_angle, 1e-3);  // its frame bends by less
       Simulation above = released(side * 1.02 * k_edge_angle, alpha);
       const Observed fallen = watch(above, 3);
       EXPECT_TRUE(fallen.outcome.beyond_since);
       EXPECT_GT(fallen.final_tilt, 1.3);
       EXPECT_TRUE(fallen.outcome.over_60_since);
       EXPECT_GT(fallen.outcome.peak_stress, 0);
-      EXPECT_EQ(fallen.outcome.impacts, 0);  // its base is no longer what it lies on
+      EXPECT_EQ(fallen.outcome.impacts, 0);                           // its base is no longer what it lies on
+      EXPECT_NEAR(fallen.outcome.peak.critical, k_edge_angle, 1e-3);  // that which it passed
       EXPECT_TRUE(std::ranges::none_of(fallen.events, [&](const Event& event) {
         return event.time > *fallen.outcome.beyond_since &&
                (event.kind == Event::Kind::uplift || event.kind == Event::Kind::impact);
