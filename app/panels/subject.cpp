@@ -81,7 +81,9 @@ double kinetic_value(const FrameContext& now, std::size_t index) {
 Burdened with_burden(const FrameContext& now, std::size_t index) {
   std::vector<BodyPose> poses;
   for (const io::BodyNumbers& body : now.row.body) poses.push_back({body.centre(), body.rotation()});
-  return burdened(now.model, now.bearers, poses)[index];
+  std::vector<Burdened> all;
+  find_burdened(now.model, now.bearers, poses, all);
+  return all[index];
 }
 
 OverturnBarrier barrier(const FrameContext& now, std::size_t index) {

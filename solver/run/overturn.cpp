@@ -59,6 +59,13 @@ bool is_base_supported(const Model& model, int index) {
   });
 }
 
+/// Something pushes it up, as a wedge or a pole does.
+bool is_propped(const Model& model, int index) {
+  return std::any_of(model.anchors.begin(), model.anchors.end(), [&](const Anchor& anchor) {
+    return anchor.body == index && anchor.type == Anchor::Type::pole;
+  });
+}
+
 /// From the centre of gravity to the edge in the direction of the tilt, and to the nearest one, m, of an
 /// upright body.
 struct EdgeAhead {
@@ -84,10 +91,10 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
 
 }  // namespace
 
-std::vector<Burdened> burdened(const Model& model, std::span<const Bearer> bearers,
-                               std::span<const BodyPose> poses) {
+void find_burdened(const Model& model, std::span<const Bearer> bearers, std::span<const BodyPose> poses,
+                   std::vector<Burdened>& all) {
   constexpr double k_as_high = 0.25;  // of the reach
-  std::vector<Burdened> all;
+  all.clear();
   for (std::size_t b = 0; b < poses.size(); ++b)
     all.push_back({model.bodies[b].mass, model.bodies[b].centre_of_gravity});
   const auto within = [&](int under, const Vec3& point) -> Vec3 {
@@ -107,7 +114,6 @@ std::vector<Burdened> burdened(const Model& model, std::span<const Bearer> beare
       under.centre_of_gravity += model.bodies[b].mass / under.mass *
                                  (within(bearers[on].body, poses[b].centre) - under.centre_of_gravity);
     }
-  return all;
 }
 
 double critical_angle(const Model& model, int index, const BodyPose& pose, const Burdened& all) {
@@ -252,32 +258,31 @@ void Outcome::observe_level(const Parameters& parameters, const State& state, st
   }
 }
 
-void Outcome::take_pose(const Model& model, std::span<const BodyPose> poses, const Burdened& all,
-                        std::size_t b) {
+void Outcome::take_pose(const Model& model, std::size_t b) {
   BodyOutcome& o = bodies_[b];
   const int body = static_cast<int>(b);
-  const BodyPose& pose = poses[b];
+  const BodyPose& pose = poses_[b];
   o.tilt = tilt(pose);
   o.peak_tilt = std::max(o.peak_tilt, o.tilt);
   if (o.first_impact) o.rebound_tilt = std::max(o.rebound_tilt, o.tilt);
   if (o.peak_tilts.empty()) o.peak_tilts.push_back(o.tilt);
   o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
-  o.slide = topple::slide(model, body, pose, bearers_[b], bearer_pose(poses, bearers_[b].body));
+  o.slide = topple::slide(model, body, pose, bearers_[b], bearer_pose(poses_, bearers_[b].body));
   o.peak_slide = std::max(o.peak_slide, o.slide);
-  o.critical = critical_angle(model, body, pose, all);
+  o.critical = critical_angle(model, body, pose, burdened_[b]);
   const double share = o.tilt / o.critical;
   BodyOutcome::Nearest& nearest = o.beyond_since ? o.beyond : o.peak;
   if (share >= nearest.share) nearest = {share, o.critical};
 }
 
-void Outcome::observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
-                           const Burdened& all, std::size_t b, std::vector<Event>& events) {
+void Outcome::observe_pose(const Model& model, const State& state, std::size_t b,
+                           std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
   const double before = o.tilt - o.critical, time_before = o.time;
   o.time = state.time;
-  const BodyPose on = bearer_pose(poses, bearers_[b].body);
-  o.vertical = poses[b].rotation.conjugate() * (on.rotation * Vec3::UnitZ());
-  take_pose(model, poses, all, b);
+  const BodyPose on = bearer_pose(poses_, bearers_[b].body);
+  o.vertical = poses_[b].rotation.conjugate() * (on.rotation * Vec3::UnitZ());
+  take_pose(model, b);
   courses_[b] = courses(model, state, b);
   const double beyond = o.tilt - o.critical;
   if (beyond > 0 && !o.beyond_since) {
@@ -301,10 +306,10 @@ void Outcome::observe_pose(const Model& model, const State& state, std::span<con
     o.over_60_since = state.time;
 }
 
-std::vector<BodyPose> Outcome::furniture_poses(const Model& model, const State& state) const {
-  std::vector<BodyPose> poses;
-  for (int b = 0; b < furniture_; ++b) poses.push_back(body_pose(model, state, b));
-  return poses;
+void Outcome::find_poses(const Model& model, const State& state) {
+  poses_.clear();
+  for (int b = 0; b < furniture_; ++b) poses_.push_back(body_pose(model, state, b));
+  find_burdened(model, bearers_, poses_, burdened_);
 }
 
 std::array<Outcome::Course, 2> Outcome::courses(const Model& model, const State& state, std::size_t b) const {
@@ -326,7 +331,7 @@ std::array<Outcome::Course, 2> Outcome::courses(const Model& model, const State&
 void Outcome::observe_peaks(const Model& model, const State& end,
                             const std::function<const State&(double time)>& within) {
   for (std::size_t b = 0; b < static_cast<std::size_t>(furniture_); ++b) {
-    const BodyOutcome& o = bodies_[b];
+    BodyOutcome& o = bodies_[b];
     const std::array<Course, 2> to = courses(model, end, b);
     const double h = end.time - o.time;
     const double least[] = {-elementary::cos(o.peak_tilts.empty() ? 0 : o.peak_tilts.back()), o.peak_slide};
@@ -339,15 +344,19 @@ void Outcome::observe_peaks(const Model& model, const State& end,
       const double t = 2 * r0 / (std::sqrt(linear * linear - 4 * quadratic * r0) - linear);
       const double greatest = before.value + t * (r0 + t * (linear / 2 + t * quadratic / 3));
       if (!(greatest > least[k])) continue;
-      const std::vector<BodyPose> poses = furniture_poses(model, within(o.time + t * h));
-      take_pose(model, poses, burdened(model, bearers_, poses)[b], b);
+      const double tilt = o.tilt, critical = o.critical;  // at the last observation, from which it goes on
+      find_poses(model, within(o.time + t * h));
+      take_pose(model, b);
+      o.tilt = tilt;
+      o.critical = critical;
     }
   }
 }
 
 // What lifts off and lands, until the body overturns: then the base is no longer what it lies on. An uplift
 // is told once it counts, with the time at which the side let go.
-void Outcome::observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events) {
+void Outcome::observe_sides(const Model& model, const State& state, double weight, std::size_t b,
+                            std::vector<Event>& events) {
   BodyOutcome& o = bodies_[b];
   for (std::size_t i = 0; i < o.sides.size(); ++i) {
     BodyOutcome::Side& side = o.sides[i];
@@ -363,7 +372,7 @@ void Outcome::observe_sides(const State& state, double weight, std::size_t b, st
         total_force_[b] > k_closing * weight)
       side = {.open = true,
               .counts = false,
-              .borne_otherwise = state.step == 0,
+              .borne_otherwise = state.step == 0 && is_propped(model, static_cast<int>(b)),
               .since = state.time,
               .vertical = o.vertical};
     if (!side.open) continue;
@@ -390,12 +399,11 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
                       const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
                       const std::vector<SectionForces>& sections, std::vector<Event>& events) {
   observe_forces(model, forces, between);
-  const std::vector<BodyPose> poses = furniture_poses(model, state);
-  const std::vector<Burdened> all = burdened(model, bearers_, poses);
-  for (std::size_t b = 0; b < poses.size(); ++b) {
+  find_poses(model, state);
+  for (std::size_t b = 0; b < poses_.size(); ++b) {
     observe_level(parameters, state, b, events);
-    observe_pose(model, state, poses, all[b], b, events);
-    observe_sides(state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
+    observe_pose(model, state, b, events);
+    observe_sides(model, state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }
   observe_sections(model, state, sections, events);
   observe_anchors(model, state, events);

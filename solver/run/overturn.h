@@ -40,8 +40,8 @@ struct Burdened {
 /// Of each of `poses`, those of the first bodies, now. Every piece counts that stood on the body at the
 /// start, or on such a piece, while it is on what bore it: its centre of gravity above the base of that, and
 /// its own base as high there as it was, to a quarter of its reach. bearers: bearers_of.
-std::vector<Burdened> burdened(const Model& model, std::span<const Bearer> bearers,
-                               std::span<const BodyPose> poses);
+void find_burdened(const Model& model, std::span<const Bearer> bearers, std::span<const BodyPose> poses,
+                   std::vector<Burdened>& all);
 
 /// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
 /// below k_uplift_angle above the nearest, rad: atan(distance/height). Infinite without a floor, and for a
@@ -169,17 +169,18 @@ class Outcome {
   /// Of body b.
   void observe_level(const Parameters& parameters, const State& state, std::size_t b,
                      std::vector<Event>& events);
-  void observe_pose(const Model& model, const State& state, std::span<const BodyPose> poses,
-                    const Burdened& all, std::size_t b, std::vector<Event>& events);
-  void take_pose(const Model& model, std::span<const BodyPose> poses, const Burdened& all, std::size_t b);
+  void observe_pose(const Model& model, const State& state, std::size_t b, std::vector<Event>& events);
+  void take_pose(const Model& model, std::size_t b);  ///< of poses_
   /// What grows and shrinks between steps, and its rate.
   struct Course {
     double value, rate;
   };
   /// Of a body that is no frame: -cos(tilt), 1, 1/s, and where the floor bears it slide, m, m/s.
   std::array<Course, 2> courses(const Model& model, const State& state, std::size_t b) const;
-  std::vector<BodyPose> furniture_poses(const Model& model, const State& state) const;
-  void observe_sides(const State& state, double weight, std::size_t b, std::vector<Event>& events);
+  /// Sets poses_ and burdened_.
+  void find_poses(const Model& model, const State& state);
+  void observe_sides(const Model& model, const State& state, double weight, std::size_t b,
+                     std::vector<Event>& events);
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
                         std::vector<Event>& events);
 
@@ -189,6 +190,8 @@ class Outcome {
   std::vector<AnchorOutcome> anchors_;
   std::vector<Bearer> bearers_;
   std::vector<std::array<Course, 2>> courses_;  ///< per body, at this observation
+  std::vector<BodyPose> poses_;                 ///< likewise, of furniture, or at a peak
+  std::vector<Burdened> burdened_;              ///< likewise
   std::vector<char> broke_;                     ///< per element
   std::vector<char> flowed_;                    ///< per node: a section beside it has flowed
   int furniture_;                               ///< bodies

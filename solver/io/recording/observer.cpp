@@ -130,7 +130,8 @@ void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
   std::vector<BodyPose> poses;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     poses.push_back(body_pose(model, at.state, static_cast<int>(b)));
-  const std::vector<Burdened> all = burdened(model, bearers, poses);
+  std::vector<Burdened> all;
+  find_burdened(model, bearers, poses, all);
   for (std::size_t b = 0; b < poses.size(); ++b) {
     const int index = static_cast<int>(b);
     const BodyPose& pose = poses[b];

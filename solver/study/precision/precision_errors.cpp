@@ -71,7 +71,8 @@ class Comparison {
     const Course& run = course(reference_.run);
     std::vector<BodyPose> poses;
     for (const Body& body : model.bodies) poses.push_back({body.centre_of_gravity, Quat::Identity()});
-    const std::vector<Burdened> at_start = burdened(model, bearers_of(model, plan.scene.setup.starts), poses);
+    std::vector<Burdened> at_start;
+    find_burdened(model, bearers_of(model, plan.scene.setup.starts), poses, at_start);
     for (int b = 0; b < model.furniture_total(); ++b) {
       const std::vector<double>& tilt = run.tilt[static_cast<std::size_t>(b)];
       const double peak = tilt.empty() ? 0 : *std::ranges::max_element(tilt);

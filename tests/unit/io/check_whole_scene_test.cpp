@@ -31,8 +31,8 @@ TEST(CheckWholeScene, what_overlaps_hides_nothing_else) {
       "[[place]]\nname = \"inside\"\nat = [2, 0]\n";
   const CheckedScene found = checked(text);
   ASSERT_EQ(found.errors.size(), 4u) << testing::PrintToString(found.errors);
-  EXPECT_NE(found.errors[0].find("furniture.b: the bodies"), std::string::npos) << found.errors[0];
-  EXPECT_NE(found.errors[1].find("block.c: the bodies"), std::string::npos) << found.errors[1];
+  EXPECT_NE(found.errors[0].find("furniture.a: the bodies"), std::string::npos) << found.errors[0];
+  EXPECT_NE(found.errors[1].find("furniture.b: the bodies"), std::string::npos) << found.errors[1];
   EXPECT_NE(found.errors[2].find("fixing.far.to: finds no point"), std::string::npos) << found.errors[2];
   EXPECT_NE(found.errors[3].find("place.inside.at: lies inside"), std::string::npos) << found.errors[3];
 }

@@ -92,7 +92,8 @@ TEST_F(FullDiskTest, files_for_paraview_appear_whole_or_not_at_all) {
 }
 
 TEST_F(FullDiskTest, a_summary_appears_whole_or_not_at_all) {
-  const Ended ended = topple({"run", "s.toml", "--json", "b.json"}, {.most_bytes = 300});
+  const Ended ended =
+      topple({"run", "chair", "--set", "run.duration=\"0.1 s\"", "--json", "b.json"}, {.most_bytes = 300});
   EXPECT_EQ(ended.code, 1);
   EXPECT_EQ(ended.err, "topple: b.json: cannot be written: File too large\n");
   EXPECT_EQ(files().size(), 2u);
