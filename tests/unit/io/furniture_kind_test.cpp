@@ -299,8 +299,7 @@ TEST(FurnitureErrors, name_file_line_and_key) {
   begins(
       refused_piece("[[furniture]]\nkind = \"bokshelf\"\n"),
       "s.toml:8:8: furniture.bokshelf.kind: there is no kind \"bokshelf\"; the nearest is bookshelf; known: "
-      "bookshelf, "
-      "cabinet, ");
+      "bed, bookshelf, cabinet, ");
   begins(refused_piece(shelf + "against = \"bakc\"\n"),
          "s.toml:9:11: furniture.bookshelf.against: there is no [[wall]] \"bakc\"; the nearest is back; "
          "known: back");
