@@ -37,7 +37,7 @@ std::vector<BodyEnd> ends_of(const Run& run) {
     const BodyOutcome& of = run.outcome().bodies()[static_cast<std::size_t>(b)];
     BodyEnd end{
         model.bodies[static_cast<std::size_t>(b)].name, of.beyond_since, of.peak_tilt * k_degrees, {}};
-    if (std::isfinite(of.critical_of_peak)) end.critical = of.critical_of_peak * k_degrees;
+    if (std::isfinite(of.peak.critical)) end.critical = of.peak.critical * k_degrees;
     out.push_back(end);
   }
   return out;
