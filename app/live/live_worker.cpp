@@ -12,6 +12,7 @@
 #include "app/batch/summary.h"
 #include "app/picture/thinning.h"
 #include "app/support/clock.h"
+#include "app/support/terms.h"
 
 namespace topple::app {
 namespace {
