@@ -150,9 +150,9 @@ void LiveWorker::step_once() {
   going_ = false;
   status_.kind = LiveStatus::Kind::over;
   std::vector<std::string> warnings = run_warnings(*run_);
-  if (std::string soft = soft_contact_warning(run_->setup().model, run_->parameters());
+  if (const std::string soft = soft_contact_warning(run_->setup().model, run_->parameters());
       !soft.empty() && !is_static(run_->setup()))
-    warnings.push_back(std::move(soft));
+    warnings.push_back(soft.substr(0, soft.find(';')));  // what to do about it is told by `check`
   status_.message = fmt::format("{}", fmt::join(warnings, "; "));
 }
 
