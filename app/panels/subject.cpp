@@ -78,18 +78,18 @@ double kinetic_value(const FrameContext& now, std::size_t index) {
   return io::kinetic_energy(now.model, now.gravity, now.row, static_cast<int>(index));
 }
 
-Burdened with_burden(const FrameContext& now, std::size_t index) {
+Stack stack_of(const FrameContext& now, std::size_t index) {
   std::vector<BodyPose> poses;
   for (const io::BodyNumbers& body : now.row.body) poses.push_back({body.centre(), body.rotation()});
-  std::vector<Burdened> all;
-  find_burdened(now.model, now.bearers, poses, all);
-  return all[index];
+  std::vector<Stack> stacks;
+  find_stacks(now.model, now.bearers, poses, stacks);
+  return stacks[index];
 }
 
 OverturnBarrier barrier(const FrameContext& now, std::size_t index) {
   const io::BodyNumbers& body = now.row.body[index];
   return overturn_barrier(now.model, static_cast<int>(index), {body.centre(), body.rotation()},
-                          with_burden(now, index), now.gravity.norm());
+                          stack_of(now, index), now.gravity.norm());
 }
 
 double margin_value(const FrameContext& now, std::size_t index) {
@@ -177,8 +177,8 @@ std::vector<std::string> about_body(const FrameContext& now, std::size_t index) 
   std::vector<std::string> lines{body.solid
                                      ? say(window_words::k_block_line, body.mass, level)
                                      : say(window_words::k_body_line, body.mass, body.member_count, level)};
-  if (const double mass = with_burden(now, index).mass; mass > body.mass)
-    lines.push_back(say(window_words::k_with_burden, mass));
+  if (const double mass = stack_of(now, index).mass; mass > body.mass)
+    lines.push_back(say(window_words::k_with_its_load, mass));
   for (const BodyTouch& touch : touches(now.model, now.row, index))
     lines.push_back(say(window_words::k_touched_by, touch.by, value_text(touch.force.norm()),
                         value_text(touch.force.z()), touch.place.z()));

@@ -51,12 +51,13 @@ void draw_guide(TeachingState& state) {
 }
 
 void draw_demos(const Player& player, TeachingState& state) {
-  ImGui::TextDisabled("%s", say(k_demos).c_str());
   state.wanted.reset();
-  if (!state.guide)
+  if (!state.guide) {
+    ImGui::TextDisabled("%s", say(k_demos).c_str());
     for (std::size_t k = 0; k < demos().size(); ++k)
       if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0}))
         state.wanted = k;
+  }
   if (player.scene().name != k_demo_scene) ImGui::TextWrapped("%s", say(k_demo_opens, k_demo_scene).c_str());
   const std::string& before = state.came_from;
   state.back =

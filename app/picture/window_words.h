@@ -388,7 +388,8 @@ inline constexpr Phrase k_member_line{"{0}, {1}, {2:.0f} mm long", "{0}、{1}、
 inline constexpr Phrase k_body_line{"{0:.4g} kg, {1} members, {2}", "{0:.4g} kg、部材 {1}、モデル {2}"};
 inline constexpr Phrase k_block_line{"{0:.4g} kg, a solid block, {1}",
                                      "{0:.4g} kg、剛なブロック、モデル {1}"};
-inline constexpr Phrase k_with_burden{"{0:.4g} kg with what stands on it", "載っている物を含めて {0:.4g} kg"};
+inline constexpr Phrase k_with_its_load{"{0:.4g} kg with what stands on it",
+                                        "載っている物を含めて {0:.4g} kg"};
 inline constexpr Phrase k_touched_by{"by {0}: {1} N, upward {2} N, at {3:.2f} m",
                                      "{0} から {1} N（上向き {2} N）、高さ {3:.2f} m"};
 inline constexpr Phrase k_anchor_strength{"strength {0} N", "耐力 {0} N"};

@@ -49,6 +49,7 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_bodies.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_keys_fittings.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/document/scene_override.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_overlap.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_planar.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_read.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_reference.cpp

@@ -36,14 +36,16 @@ int bearer_of(const Model& model, std::span<const Vec3> position, int body);
 
 /// What bears a body at the start.
 struct Bearer {
-  int body;    ///< as of bearer_of, likewise where both lean as one; -1: none, the floor
-  Vec3 place;  ///< m, where the middle of the base is on it, in its reference axes, or in the floor's frame
+  int body;    ///< piece that it stands on, upright or leaning with it; -1: the floor, or nothing
+  Vec3 place;  ///< m, middle of the base of the body, in the reference axes of the piece or in the floor's
+               ///< frame
 };
+/// Of every body.
 std::vector<Bearer> bearers_of(const Model& model, const std::vector<BodyStart>& starts);
 
-/// Of what bears a body, of whose kind `poses` are those of the first ones, now; -1: of the floor.
+/// poses[bearer]; of -1, the floor, that of its frame.
 BodyPose bearer_pose(std::span<const BodyPose> poses, int bearer);
-/// Where the middle of the base of a body is now, as Bearer::place.
+/// Where the middle of the base of a body is on its bearer, as Bearer::place. pose, on: of the two now.
 Vec3 place_on(const Model& model, int body, const BodyPose& pose, int bearer, const BodyPose& on);
 
 }  // namespace topple

@@ -91,12 +91,12 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
 
 }  // namespace
 
-void find_burdened(const Model& model, std::span<const Bearer> bearers, std::span<const BodyPose> poses,
-                   std::vector<Burdened>& all) {
+void find_stacks(const Model& model, std::span<const Bearer> bearers, std::span<const BodyPose> poses,
+                 std::vector<Stack>& stacks) {
   constexpr double k_as_high = 0.25;  // of the reach
-  all.clear();
+  stacks.clear();
   for (std::size_t b = 0; b < poses.size(); ++b)
-    all.push_back({model.bodies[b].mass, model.bodies[b].centre_of_gravity});
+    stacks.push_back({model.bodies[b].mass, model.bodies[b].centre_of_gravity});
   const auto within = [&](int under, const Vec3& point) -> Vec3 {
     return poses[under].rotation.conjugate() * (point - poses[under].centre) +
            model.bodies[under].centre_of_gravity;
@@ -109,26 +109,26 @@ void find_burdened(const Model& model, std::span<const Bearer> bearers, std::spa
   };
   for (std::size_t b = 0; b < poses.size(); ++b)
     for (int on = static_cast<int>(b); bearers[on].body >= 0 && rides(on); on = bearers[on].body) {
-      Burdened& under = all[bearers[on].body];
+      Stack& under = stacks[bearers[on].body];
       under.mass += model.bodies[b].mass;
       under.centre_of_gravity += model.bodies[b].mass / under.mass *
                                  (within(bearers[on].body, poses[b].centre) - under.centre_of_gravity);
     }
 }
 
-double critical_angle(const Model& model, int index, const BodyPose& pose, const Burdened& all) {
-  const auto edge = edge_ahead(model, index, pose, all.centre_of_gravity);
+double critical_angle(const Model& model, int index, const BodyPose& pose, const Stack& stack) {
+  const auto edge = edge_ahead(model, index, pose, stack.centre_of_gravity);
   return edge ? elementary::atan2(edge->distance, edge->height) : std::numeric_limits<double>::infinity();
 }
 
-OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& pose, const Burdened& all,
+OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& pose, const Stack& stack,
                                  double gravity) {
-  const auto edge = edge_ahead(model, index, pose, all.centre_of_gravity);
+  const auto edge = edge_ahead(model, index, pose, stack.centre_of_gravity);
   constexpr double k_never = std::numeric_limits<double>::infinity();
   if (!edge) return {k_never, k_never};
   const auto barrier = [&](double distance, double angle) {
     const double critical = elementary::atan2(distance, edge->height);
-    return all.mass * gravity * elementary::hypot(distance, edge->height) *
+    return stack.mass * gravity * elementary::hypot(distance, edge->height) *
            (1 - elementary::cos(critical - std::min(angle, critical)));
   };
   const double upright = barrier(edge->nearest, 0);
@@ -145,7 +145,7 @@ Outcome::Outcome(const Model& model, const std::vector<BodyStart>& starts)
       broke_(model.elements.size()),
       flowed_(model.node_position.size()),
       furniture_(model.furniture_total()) {
-  courses_.resize(model.bodies.size());
+  tilts_and_slides_.resize(model.bodies.size());
   for (const Section& section : model.sections) {
     const auto of = [&](const Vec3& normal, const Vec3& moment) {
       return equivalent_stress(section, {normal, moment});
@@ -269,7 +269,7 @@ void Outcome::take_pose(const Model& model, std::size_t b) {
   o.peak_tilts.back() = std::max(o.peak_tilts.back(), o.tilt);
   o.slide = topple::slide(model, body, pose, bearers_[b], bearer_pose(poses_, bearers_[b].body));
   o.peak_slide = std::max(o.peak_slide, o.slide);
-  o.critical = critical_angle(model, body, pose, burdened_[b]);
+  o.critical = critical_angle(model, body, pose, stacks_[b]);
   const double share = o.tilt / o.critical;
   BodyOutcome::Nearest& nearest = o.beyond_since ? o.beyond : o.peak;
   if (share >= nearest.share) nearest = {share, o.critical};
@@ -283,7 +283,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
   const BodyPose on = bearer_pose(poses_, bearers_[b].body);
   o.vertical = poses_[b].rotation.conjugate() * (on.rotation * Vec3::UnitZ());
   take_pose(model, b);
-  courses_[b] = courses(model, state, b);
+  tilts_and_slides_[b] = tilt_and_slide(model, state, b);
   const double beyond = o.tilt - o.critical;
   if (beyond > 0 && !o.beyond_since) {
     const bool crossed = state.step > 0 && before < 0;
@@ -309,12 +309,13 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
 void Outcome::find_poses(const Model& model, const State& state) {
   poses_.clear();
   for (int b = 0; b < furniture_; ++b) poses_.push_back(body_pose(model, state, b));
-  find_burdened(model, bearers_, poses_, burdened_);
+  find_stacks(model, bearers_, poses_, stacks_);
 }
 
-std::array<Outcome::Course, 2> Outcome::courses(const Model& model, const State& state, std::size_t b) const {
+std::array<Outcome::Varying, 2> Outcome::tilt_and_slide(const Model& model, const State& state,
+                                                        std::size_t b) const {
   constexpr double k_none = std::numeric_limits<double>::quiet_NaN();
-  std::array<Course, 2> out{{{k_none, k_none}, {k_none, k_none}}};
+  std::array<Varying, 2> out{{{k_none, k_none}, {k_none, k_none}}};
   const BodyState& s = state.bodies[b];
   if (traits(s.level).moves_nodes) return out;
   const Vec3 axis = s.rotation * Vec3::UnitZ(), turning = s.rotation * s.angular_velocity;
@@ -332,11 +333,11 @@ void Outcome::observe_peaks(const Model& model, const State& end,
                             const std::function<const State&(double time)>& within) {
   for (std::size_t b = 0; b < static_cast<std::size_t>(furniture_); ++b) {
     BodyOutcome& o = bodies_[b];
-    const std::array<Course, 2> to = courses(model, end, b);
+    const std::array<Varying, 2> to = tilt_and_slide(model, end, b);
     const double h = end.time - o.time;
     const double least[] = {-elementary::cos(o.peak_tilts.empty() ? 0 : o.peak_tilts.back()), o.peak_slide};
     for (std::size_t k = 0; k < to.size(); ++k) {
-      const Course &before = courses_[b][k], &after = to[k];
+      const Varying &before = tilts_and_slides_[b][k], &after = to[k];
       if (!(before.rate > 0 && after.rate < 0)) continue;
       // the cubic polynomial with these values and rates, whose derivative is a t^2 + b t + c
       const double rise = 6 * (before.value - after.value), r0 = h * before.rate, r1 = h * after.rate;

@@ -32,21 +32,22 @@ inline constexpr double k_uplift_angle = 0.05 * k_pi / 180;
 /// Impacts of a body of which time and the peak that follows are kept.
 inline constexpr std::size_t k_kept_impacts = 100;
 
-/// A body and what it bears.
-struct Burdened {
+/// A body with all that stands on it.
+struct Stack {
   double mass;             ///< kg, of all
   Vec3 centre_of_gravity;  ///< m, of all, in the reference axes of the body
 };
-/// Of each of `poses`, those of the first bodies, now. Every piece counts that stood on the body at the
-/// start, or on such a piece, while it is on what bore it: its centre of gravity above the base of that, and
-/// its own base as high there as it was, to a quarter of its reach. bearers: bearers_of.
-void find_burdened(const Model& model, std::span<const Bearer> bearers, std::span<const BodyPose> poses,
-                   std::vector<Burdened>& all);
+/// Sets `stacks`, one for each of `poses`, which are those of the bodies now, in their order. A piece counts
+/// that stood on the body at the start, or on such a piece, while it is still there: its centre of gravity
+/// above the base of what bore it, and its own base as high on that as it was, within a quarter of its reach.
+/// bearers: bearers_of.
+void find_stacks(const Model& model, std::span<const Bearer> bearers, std::span<const BodyPose> poses,
+                 std::vector<Stack>& stacks);
 
-/// Angle at which the centre of gravity stands above the support polygon's edge in the direction of the tilt,
-/// below k_uplift_angle above the nearest, rad: atan(distance/height). Infinite without a floor, and for a
-/// body without a base or with supports there.
-double critical_angle(const Model& model, int body, const BodyPose& pose, const Burdened& all);
+/// Tilt at which the centre of gravity of the stack is above the support polygon's edge in the direction of
+/// the tilt, or of a body that tilts less than k_uplift_angle above the nearest edge, rad:
+/// atan(distance/height). Infinite without a floor, and for a body without a base or with supports there.
+double critical_angle(const Model& model, int body, const BodyPose& pose, const Stack& stack);
 
 /// Energy that lifts the centre of gravity of a rigid body, and of what it bears, over an edge, J; both
 /// infinite where critical_angle is.
@@ -56,7 +57,7 @@ struct OverturnBarrier {
   double whole;  ///< from upright, over the nearest edge
 };
 /// gravity: m/s^2.
-OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, const Burdened& all,
+OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, const Stack& stack,
                                  double gravity);
 
 /// Travel of the middle of the base along what bears the body since the start, in its axes, m; along the
@@ -171,13 +172,13 @@ class Outcome {
                      std::vector<Event>& events);
   void observe_pose(const Model& model, const State& state, std::size_t b, std::vector<Event>& events);
   void take_pose(const Model& model, std::size_t b);  ///< of poses_
-  /// What grows and shrinks between steps, and its rate.
-  struct Course {
-    double value, rate;
+  struct Varying {
+    double value, rate;  ///< rate: per second
   };
-  /// Of a body that is no frame: -cos(tilt), 1, 1/s, and where the floor bears it slide, m, m/s.
-  std::array<Course, 2> courses(const Model& model, const State& state, std::size_t b) const;
-  /// Sets poses_ and burdened_.
+  /// -cos(tilt), and slide, m. NaN: not known between steps, of a frame, or not at all, of a slide on a
+  /// piece.
+  std::array<Varying, 2> tilt_and_slide(const Model& model, const State& state, std::size_t b) const;
+  /// Sets poses_ and stacks_.
   void find_poses(const Model& model, const State& state);
   void observe_sides(const Model& model, const State& state, double weight, std::size_t b,
                      std::vector<Event>& events);
@@ -189,13 +190,13 @@ class Outcome {
   std::vector<BodyOutcome> bodies_;
   std::vector<AnchorOutcome> anchors_;
   std::vector<Bearer> bearers_;
-  std::vector<std::array<Course, 2>> courses_;  ///< per body, at this observation
-  std::vector<BodyPose> poses_;                 ///< likewise, of furniture, or at a peak
-  std::vector<Burdened> burdened_;              ///< likewise
-  std::vector<char> broke_;                     ///< per element
-  std::vector<char> flowed_;                    ///< per node: a section beside it has flowed
-  int furniture_;                               ///< bodies
-  std::vector<Eigen::Vector4d> unit_stress_;    ///< per section: Pa by N, Mx, My and Mz of one
+  std::vector<std::array<Varying, 2>> tilts_and_slides_;  ///< per body, at this observation
+  std::vector<BodyPose> poses_;                           ///< likewise, of furniture, or at a peak
+  std::vector<Stack> stacks_;                             ///< likewise
+  std::vector<char> broke_;                               ///< per element
+  std::vector<char> flowed_;                              ///< per node: a section beside it has flowed
+  int furniture_;                                         ///< bodies
+  std::vector<Eigen::Vector4d> unit_stress_;              ///< per section: Pa by N, Mx, My and Mz of one
   /// Per body, per side: N, on it and between it and the opposite side.
   std::vector<std::vector<double>> side_force_, inner_force_;
   std::vector<double> total_force_;  ///< per body, N

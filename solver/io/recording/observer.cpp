@@ -130,12 +130,12 @@ void fill_bodies(const Run& run, const Snapshot& at, FrameRow& row) {
   std::vector<BodyPose> poses;
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     poses.push_back(body_pose(model, at.state, static_cast<int>(b)));
-  std::vector<Burdened> all;
-  find_burdened(model, bearers, poses, all);
+  std::vector<Stack> stacks;
+  find_stacks(model, bearers, poses, stacks);
   for (std::size_t b = 0; b < poses.size(); ++b) {
     const int index = static_cast<int>(b);
     const BodyPose& pose = poses[b];
-    const double critical = critical_angle(model, index, pose, all[b]);
+    const double critical = critical_angle(model, index, pose, stacks[b]);
     const Vec3& x = pose.centre;
     const Quat& q = pose.rotation;
     row.body[b] = {.x = x.x(),

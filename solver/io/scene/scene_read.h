@@ -33,7 +33,9 @@ void read_materials_and_sections(const Entry& root, Setup& setup);
 /// [[cabinet]] in the order of the file, then [[frame]], then [[block]], then floors and walls of members.
 /// The entry of each body that is furniture.
 std::vector<Entry> read_bodies(const Entry& root, Setup& setup);
-/// Bodies that start within each other cannot be told apart by contact. `entries`: those of read_bodies.
+/// Contact would throw out what starts within a floor or a wall. `entries`: those of read_bodies.
+void check_planes(const std::vector<Entry>& entries, const Setup& setup);
+/// Bodies that start within each other cannot be told apart by contact.
 void check_overlap(const std::vector<Entry>& entries, const Setup& setup);
 
 /// Refuses `model = "planar"` and `restitution` of a body that does not begin as a planar block, and a

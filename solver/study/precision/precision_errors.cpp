@@ -47,7 +47,7 @@ Course course_of(const std::string& row) {
 
 /// Least critical angle of a body, with what it bears at the start, over the edges of its base, rad; none: it
 /// has none.
-std::optional<double> least_critical(const Model& model, int b, const Burdened& all) {
+std::optional<double> least_critical(const Model& model, int b, const Stack& all) {
   constexpr double k_little = 1e-3;  // rad
   double least = std::numeric_limits<double>::infinity();
   const std::vector<Vec3>& polygon = model.bodies[static_cast<std::size_t>(b)].support_polygon;
@@ -71,8 +71,8 @@ class Comparison {
     const Course& run = course(reference_.run);
     std::vector<BodyPose> poses;
     for (const Body& body : model.bodies) poses.push_back({body.centre_of_gravity, Quat::Identity()});
-    std::vector<Burdened> at_start;
-    find_burdened(model, bearers_of(model, plan.scene.setup.starts), poses, at_start);
+    std::vector<Stack> at_start;
+    find_stacks(model, bearers_of(model, plan.scene.setup.starts), poses, at_start);
     for (int b = 0; b < model.furniture_total(); ++b) {
       const std::vector<double>& tilt = run.tilt[static_cast<std::size_t>(b)];
       const double peak = tilt.empty() ? 0 : *std::ranges::max_element(tilt);

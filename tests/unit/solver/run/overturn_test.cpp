@@ -78,7 +78,7 @@ TEST(Overturn, tilt_is_the_angle_of_the_vertical_axis_whatever_the_yaw) {
   }
 }
 
-Burdened alone(const Model& model) {
+Stack alone(const Model& model) {
   return {model.bodies[0].mass, model.bodies[0].centre_of_gravity};
 }
 
@@ -256,20 +256,20 @@ TEST(Overturn, what_a_body_bears_counts_while_it_is_above_its_base) {
     ASSERT_EQ(bearers[b].body, b - 1);
     EXPECT_LT((bearers[b].place - model.bodies[b].base_centre).norm(), 1e-12) << b;
   }
-  std::vector<Burdened> all, left, lying;
-  find_burdened(model, bearers, poses, all);
+  std::vector<Stack> all, left, lying;
+  find_stacks(model, bearers, poses, all);
   EXPECT_NEAR(critical_angle(model, 0, poses[0], all[0]), critical(std::vector{20., 30., 5.}), 1e-12);
   EXPECT_NEAR(all[0].mass, 55, 1e-12);
   EXPECT_NEAR(all[1].mass, 35, 1e-12);
   EXPECT_EQ(all[2].centre_of_gravity, model.bodies[2].centre_of_gravity);
   poses[2].centre = Vec3(0.5, 0, 0.2);
-  find_burdened(model, bearers, poses, left);
+  find_stacks(model, bearers, poses, left);
   EXPECT_NEAR(critical_angle(model, 0, poses[0], left[0]), critical(std::vector{20., 30.}), 1e-12);
   EXPECT_NEAR(left[1].mass, 30, 1e-12);
   // both upper ones lie beyond the head of the lowest, which lies on its side
   const Quat quarter = exp_quaternion(k_pi / 2 * Vec3::UnitY());
   for (const int b : {0, 1, 2}) poses[b] = {Vec3(1.2 * b, 0, 0.15), quarter};
-  find_burdened(model, bearers, poses, lying);
+  find_stacks(model, bearers, poses, lying);
   for (const int b : {0, 1, 2}) EXPECT_EQ(lying[b].mass, model.bodies[b].mass) << b;
 }
 
