@@ -9,8 +9,8 @@
 #include "app/picture/furnish_words.h"
 #include "render/scene/orbit.h"
 #include "render/scene/text_layout.h"
+#include "solver/io/builtin/builtin.h"
 #include "solver/io/document/scene_document.h"
-#include "solver/io/scene/builtin.h"
 #include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_file.h"
 

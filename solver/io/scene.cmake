@@ -5,7 +5,7 @@ file(GLOB scene_files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/assets/furniture/*
   ${PROJECT_SOURCE_DIR}/assets/scenes/elements/*.toml
   ${PROJECT_SOURCE_DIR}/assets/scenes/verify/*.toml)
 topple_embed(
-  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/scene/builtin_scenes.cpp.in
+  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin/builtin_scenes.cpp.in
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_scenes.cpp
   BASE ${PROJECT_SOURCE_DIR}/assets
   FILES ${scene_files})
@@ -15,7 +15,7 @@ set(record_files
   ${PROJECT_SOURCE_DIR}/assets/records/long-period-y.EW
   ${PROJECT_SOURCE_DIR}/assets/records/near-fault.csv)
 topple_embed(
-  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/scene/builtin_records.cpp.in
+  TEMPLATE ${PROJECT_SOURCE_DIR}/solver/io/builtin/builtin_records.cpp.in
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/builtin_records.cpp
   WITH_EXTENSION
   FILES ${record_files})
@@ -58,5 +58,5 @@ target_sources(topple_scene PRIVATE
   ${PROJECT_SOURCE_DIR}/solver/io/document/toml_precheck.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_room.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/scene/scene_shakes.cpp
-  ${PROJECT_SOURCE_DIR}/solver/io/scene/stock.cpp
+  ${PROJECT_SOURCE_DIR}/solver/io/builtin/stock.cpp
   ${PROJECT_SOURCE_DIR}/solver/io/common/units.cpp)

@@ -3,11 +3,11 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/io/builtin/stock.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/furniture_piece.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/io/scene/scene_words.h"
-#include "solver/io/scene/stock.h"
 #include "solver/math/ranges.h"
 #include "solver/model/block.h"
 #include "solver/model/body_builder.h"

@@ -4,13 +4,13 @@
 #include <filesystem>
 #include <map>
 
+#include "solver/io/builtin/builtin.h"
+#include "solver/io/builtin/stock.h"
 #include "solver/io/common/nearest_name.h"
-#include "solver/io/scene/builtin.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_keys.h"
 #include "solver/io/scene/scene_read.h"
-#include "solver/io/scene/stock.h"
 #include "solver/math/ranges.h"
 
 namespace topple::io {

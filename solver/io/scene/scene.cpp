@@ -3,12 +3,12 @@
 #include <filesystem>
 #include <fstream>
 
+#include "solver/io/builtin/stock.h"
 #include "solver/io/document/scene_document.h"
 #include "solver/io/scene/furniture.h"
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_read.h"
-#include "solver/io/scene/stock.h"
 
 namespace topple::io {
 namespace {

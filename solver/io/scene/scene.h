@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "solver/io/scene/builtin.h"
+#include "solver/io/builtin/builtin.h"
 #include "solver/io/scene/scene_content.h"
 
 namespace topple::io {

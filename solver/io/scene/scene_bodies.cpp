@@ -6,9 +6,9 @@
 
 #include "solver/body/model_level.h"
 #include "solver/frame/integrator.h"
+#include "solver/io/builtin/stock.h"
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_read.h"
-#include "solver/io/scene/stock.h"
 #include "solver/model/block.h"
 #include "solver/model/cabinet.h"
 #include "solver/reduced/elastic_basis.h"

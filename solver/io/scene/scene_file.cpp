@@ -5,7 +5,7 @@
 #include <fstream>
 #include <optional>
 
-#include "solver/io/scene/builtin.h"
+#include "solver/io/builtin/builtin.h"
 #include "solver/math/ranges.h"
 
 namespace topple::io {

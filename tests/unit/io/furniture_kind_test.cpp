@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/io/builtin/builtin.h"
 #include "solver/io/edit/scene_save.h"
-#include "solver/io/scene/builtin.h"
 #include "solver/io/scene/furniture.h"
 #include "solver/io/scene/furniture_kind.h"
 #include "solver/io/scene/scene.h"

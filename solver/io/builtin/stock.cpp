@@ -1,4 +1,4 @@
-#include "solver/io/scene/stock.h"
+#include "solver/io/builtin/stock.h"
 
 #include <algorithm>
 #include <memory>
