@@ -11,7 +11,6 @@
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
 #include "solver/contact/proximity.h"
-#include "solver/io/scene/fixing_kinds.h"
 #include "solver/reduced/tipping.h"
 #include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
@@ -57,16 +56,6 @@ void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::st
                     "gives way before the anchor does; at a corner it is stiffer",
                     anchor.name, body.name, model.members[at.member].name));
   }
-}
-
-void warn_of_stoppers(const Model& model, std::vector<std::string>& list) {
-  std::set<int> told;
-  for (const Anchor& anchor : model.anchors)
-    if (anchor.fixing == io::traits(io::FixingKind::stopper).word && told.insert(anchor.body).second)
-      list.push_back(
-          fmt::format("the wedges under \"{}\" push without friction: it slides, and may fall, "
-                      "earlier than on wedges of rubber",
-                      model.bodies[anchor.body].name));
 }
 
 /// Where a wall pushes a body away as the run begins.
@@ -188,7 +177,6 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   if (setup.run.analysis != Analysis::dynamic) return list;
   const State start = start_state(setup.model, setup.starts);
   warn_of_anchors(setup, start, list);
-  warn_of_stoppers(setup.model, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
   for (std::string words : {soft_contact_warning(setup.model, setup.parameters), bending_warning(setup)})

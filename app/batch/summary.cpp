@@ -161,6 +161,20 @@ ordered_json peak_load_factor(const Run& run) {
   return number(peak);
 }
 
+ordered_json probes(const Run& run) {
+  ordered_json out = ordered_json::array();
+  for (std::size_t k = 0; k < run.probes().size(); ++k) {
+    const ProbeOutcome& probe = run.probes()[k];
+    out.push_back(
+        {{"name", run.setup().probes[k].name},
+         {"final",
+          {{"displacement_m", vector_json(probe.displacement)},
+           {"rotation_rad", vector_json(probe.rotation)}}},
+         {"peak", {{"displacement_m", vector_json(probe.peak)}, {"time_s", vector_json(probe.peak_time)}}}});
+  }
+  return out;
+}
+
 }  // namespace
 
 ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
@@ -180,6 +194,13 @@ ordered_json describe_anchor(const Model& model, const Anchor& anchor) {
           {"leads_to", anchor.leads_to.empty() ? ordered_json(nullptr) : ordered_json(anchor.leads_to)},
           {"own_end", place(anchor.own())},
           {"other_end", place(anchor.other)}};
+}
+
+ordered_json describe_wedge(const Model& model, const Wedge& wedge) {
+  const Body& body = model.bodies[static_cast<std::size_t>(wedge.body)];
+  ordered_json nodes = ordered_json::array();
+  for (const int node : wedge.nodes) nodes.push_back(node - body.first_node);
+  return {{"name", wedge.name}, {"body", body.name}, {"nodes", nodes}, {"lift_m", number(wedge.lift)}};
 }
 
 ordered_json summary(const io::Scene& scene, Run& run, const std::string& status, double wall_s) {
@@ -241,16 +262,9 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
     out["bodies"].push_back(
         body(run.setup(), p.integrator, run.outcome().bodies()[b], body_momentum(model, state, b), b));
   out["anchors"] = anchors(run);
-  out["probes"] = ordered_json::array();
-  for (std::size_t k = 0; k < run.probes().size(); ++k) {
-    const ProbeOutcome& probe = run.probes()[k];
-    out["probes"].push_back(
-        {{"name", run.setup().probes[k].name},
-         {"final",
-          {{"displacement_m", vector_json(probe.displacement)},
-           {"rotation_rad", vector_json(probe.rotation)}}},
-         {"peak", {{"displacement_m", vector_json(probe.peak)}, {"time_s", vector_json(probe.peak_time)}}}});
-  }
+  out["wedges"] = ordered_json::array();
+  for (const Wedge& wedge : run.setup().wedges) out["wedges"].push_back(describe_wedge(model, wedge));
+  out["probes"] = probes(run);
   if (!run.setup().room.places.empty()) {
     out["person_m"] = run.setup().room.person;
     out["ways"] = ways_json(run);

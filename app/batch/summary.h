@@ -33,6 +33,10 @@ nlohmann::ordered_json describe_anchor(const Model& model, const Anchor& anchor)
 /// Of one that stands for a [[fixing]], which nodes it took and how far they are, in a line.
 std::string fixing_line(const nlohmann::ordered_json& described);
 
+/// Name and body of a stopper, the nodes that it lifts and by how much; then in a line.
+nlohmann::ordered_json describe_wedge(const Model& model, const Wedge& wedge);
+std::string wedge_line(const nlohmann::ordered_json& described);
+
 /// Of a UTF-8 text; what is not counts as one each.
 std::size_t letters(const std::string& text);
 

@@ -55,7 +55,10 @@ std::string static_head(const ordered_json& s) {
       s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
   for (const auto& step : s["static"])
     out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
-                       step["converged"].get<bool>() ? "converged" : "no equilibrium", loss_in_words(step));
+                       step["converged"].get<bool>() ? "converged"
+                       : s["status"] == "stopped"    ? "not stable, the path ends"
+                                                     : "no equilibrium",
+                       loss_in_words(step));
   const auto stable = [](const ordered_json& step) { return step["stable"] == true; };
   if (!s["static"].empty() && std::ranges::all_of(s["static"], stable))
     out += s["status"] == "diverged" ? "stable at every load factor up to there\n"
@@ -251,6 +254,15 @@ std::string fixing_line(const ordered_json& a) {
                      a["other_end"].is_null() ? to : at(a["other_end"]));
 }
 
+std::string wedge_line(const ordered_json& w) {
+  std::string nodes;
+  for (const auto& node : w["nodes"])
+    nodes += (nodes.empty() ? "" : " and ") + std::to_string(node.get<int>());
+  return fmt::format("fixing {}: stopper under node{} {} of {}, lifts it by {:.1f} mm",
+                     w["name"].get<std::string>(), w["nodes"].size() > 1 ? "s" : "", nodes,
+                     w["body"].get<std::string>(), 1e3 * w["lift_m"].get<double>());
+}
+
 std::string energy_in_words(const ordered_json& e) {
   constexpr double k_told = 1e-3;  // of what came in or was dissipated
   const auto joules = [&](const char* key) { return e[key].is_null() ? 0 : e[key].get<double>(); };
@@ -293,6 +305,7 @@ std::string summary_table(const ordered_json& s) {
   for (const auto& b : s["bodies"]) out += chance_line(b);
   for (const auto& b : s["bodies"]) out += damage_line(b);
   for (const auto& a : s["anchors"]) out += anchor_line(a);
+  for (const auto& w : s["wedges"]) out += wedge_line(w) + "\n";
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);
   if (s.contains("ways")) out += ways_in_words(s["ways"], s["person_m"].get<double>());

@@ -31,6 +31,8 @@ int check_command(const CheckOptions& options) {
       const Model& model = checked.scene->setup.model;
       for (const Anchor& anchor : model.anchors)
         if (!anchor.fixing.empty()) fmt::print("{}\n", fixing_line(describe_anchor(model, anchor)));
+      for (const Wedge& wedge : checked.scene->setup.wedges)
+        fmt::print("{}\n", wedge_line(describe_wedge(model, wedge)));
     } catch (const io::InputError& error) {
       log_message(error.what());
       code = k_bad_input;

@@ -89,7 +89,7 @@ StepStatus Run::advance() {
   return status_;
 }
 
-// A load step that fails leaves what converged of it.
+// A load step that fails leaves what converged of it. One that was to end the path where it does is none.
 void Run::advance_load() {
   const double factor = now_.state.load_factor;
   status_ = path_->advance(now_.parameters, now_.state);
@@ -100,7 +100,13 @@ void Run::advance_load() {
     resume(setup_->model, now_.state, workspace_);
     observe();
   }
-  if (!status_.ok()) now_.load_steps.push_back({status_.load_factor, false, status_.stability});
+  if (status_.ok()) return;
+  now_.load_steps.push_back({status_.load_factor, false, status_.stability});
+  using Loss = Stability::Loss;
+  const Loss loss = status_.stability.loss;
+  now_.stopped_early =
+      setup_->run.statics.stop_at_instability && loss != Loss::none && loss != Loss::fracture;
+  if (now_.stopped_early) status_ = {};
 }
 
 void Run::edit(const Edit& edit) {
@@ -109,7 +115,8 @@ void Run::edit(const Edit& edit) {
 }
 
 bool Run::over() const {
-  if (is_static()) return !status_.ok() || now_.state.step >= setup_->run.statics.load_steps;
+  if (is_static())
+    return !status_.ok() || now_.stopped_early || now_.state.step >= setup_->run.statics.load_steps;
   if (setup_->run.analysis == Analysis::modes) return true;
   const double slack = now_.parameters.adaptive ? k_least_step : now_.parameters.time_step / 2;
   return !status_.ok() || now_.stopped_early || now_.state.time > setup_->run.duration - slack;

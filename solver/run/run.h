@@ -39,6 +39,14 @@ struct Probe {
   int node;  ///< index into the model
 };
 
+/// What lifts corners of a body's base off the floor: contact points that reach lower.
+struct Wedge {
+  std::string name;
+  int body;
+  std::vector<int> nodes;
+  double lift;  ///< m
+};
+
 /// All that a run needs.
 struct Setup {
   Model model;
@@ -47,6 +55,7 @@ struct Setup {
   RunSettings run;
   std::vector<Probe> probes;
   Room room = {};
+  std::vector<Wedge> wedges = {};  ///< as they are told; the contact points have their heights
 };
 
 /// Motion of one probe so far. Displacements from the reference pose, m, floor's frame; rotation vector, rad.

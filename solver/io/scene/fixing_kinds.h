@@ -14,10 +14,9 @@ enum class FixingKind { l_bracket, strap, pole, mat, stopper, connector };
 
 /// Where on its body a fixing holds, unless the scene says `at`.
 enum class FixingPlace {
-  near,   ///< both upper corners next to a wall; else the node nearest to what it leads to
-  top,    ///< the middle of a block's top, else the node nearest to it
-  feet,   ///< every corner of the base
-  front,  ///< the corners of the base that are farthest from the wall
+  near,  ///< both upper corners next to a wall; else the node nearest to what it leads to
+  top,   ///< the middle of a block's top, else the node nearest to it
+  feet,  ///< every corner of the base
 };
 
 struct FixingTraits {
@@ -28,8 +27,8 @@ struct FixingTraits {
   double stiffness;  ///< N/m, of each point
   double strength;   ///< N, of each point
   double preload;    ///< N, what it holds at the start; of a pole a push
-  double lift;       ///< m, how much longer it is than its place at the start, as far as the weight lets it:
-                     ///< it wedges
+  double lift;       ///< m, by which it lifts the corners of the base that are farthest from the wall; less
+                     ///< where the body leans on the wall before; what bears is the contact. 0: an anchor
   double reach;      ///< m, greatest distance that it bridges
   bool pin;          ///< holds in all directions at one point (anchor.h), else along its line
   bool to_wall, to_floor, to_ceiling, to_body;
@@ -100,12 +99,12 @@ inline constexpr FixingTraits k_fixings[] = {
     {.kind = FixingKind::stopper,
      .word = "stopper",
      .type = Anchor::Type::pole,
-     .place = FixingPlace::front,
-     .stiffness = 50e3,
-     .strength = 5e3,
+     .place = FixingPlace::feet,
+     .stiffness = 0,
+     .strength = 0,
      .preload = 0,
      .lift = 10e-3,
-     .reach = 0.1,
+     .reach = 0.5,
      .pin = false,
      .to_wall = true,
      .to_floor = true,

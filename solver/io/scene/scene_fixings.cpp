@@ -14,14 +14,12 @@
 namespace topple::io {
 namespace {
 
-constexpr double k_off_body = 0.1;    // m, from `at` to the body
-constexpr double k_upper = 0.05;      // of a body's height: what counts as its top
-constexpr double k_same = 1e-3;       // m: nodes as near as that are equally near
-constexpr double k_wedge = 0.1;       // m below the floor, from where a wedge pushes
-constexpr double k_least_gap = 1e-6;  // m
-constexpr double k_wedged = 0.9;      // of the weight: what wedges push with at most, so that the back stands
-constexpr double k_leans_over = 0.5;  // m, to a wall that is named
-constexpr double k_above = 100;       // m, any place above a body
+constexpr double k_off_body = 0.1;       // m, from `at` to the body
+constexpr double k_upper = 0.05;         // of a body's height: what counts as its top
+constexpr double k_same = 1e-3;          // m: nodes as near as that are equally near
+constexpr double k_least_gap = 1e-6;     // m
+constexpr double k_turned_least = 1e-9;  // rad
+constexpr double k_above = 100;          // m, any place above a body
 
 /// What a fixing leads to: a plane, or a body.
 struct Target {
@@ -50,25 +48,58 @@ class Fixing {
         start_(start),
         number_(number),
         setup_(setup),
-        kind_(traits(entry.chosen("kind", k_fixings))),
+        kind_(kind_of(entry)),
         body_(find_body(entry, setup.model)) {
     if (body().ground) entry.fail("body", "\"" + body().name + "\" is no furniture");
     target_ = find_target();
     if (target_.body == body_) entry.fail("to", "is the fixing's own body");
   }
 
+  static const FixingTraits& kind_of(const Entry& entry) { return traits(entry.chosen("kind", k_fixings)); }
+
+  // Raises the corners of the base that are farthest from the wall, by contact points that reach lower there:
+  // the body starts as it leans on them, or on the wall if it comes to lean there first.
+  void lift() {
+    for (const char* key : {"at", "stiffness", "strength", "preload", "on"})
+      if (entry_.has(key))
+        entry_.fail(key, "a stopper has none: it bears and rubs as the feet of its body do");
+    const Target wall = nearest_wall();
+    const std::vector<int> corners = feet();
+    const auto distance = [&](int node) { return wall.distance(x(node)); };
+    const auto [back, front] = ranges::minmax_element(corners, {}, distance);
+    const double depth = distance(*front) - distance(*back);
+    if (target_.wall && distance(*back) > kind_.reach)
+      entry_.fail("to", "is " + millimetres(distance(*back)) + " from \"" + body().name +
+                            "\": a stopper leans it towards a wall within " + millimetres(kind_.reach));
+    BodyStart& start = setup_.starts[body_];
+    if (!start.rotation.isZero(0) || !(depth > k_same))
+      entry_.fail("body",
+                  "\"" + body().name + "\" does not stand level on a base as deep as a stopper needs");
+    const double angle = leaning_angle(wall, x(*back), std::asin(std::min(1., kind_.lift / depth)));
+    if (!(angle > 0))
+      entry_.fail("body", "\"" + body().name + "\" touches \"" + wall.name +
+                              "\": a stopper leans it back, which takes a gap");
+    start.pivot = x(*back);
+    start.rotation = angle * wall.normal.cross(Vec3::UnitZ());
+    Wedge wedge{entry_.name(), body_, {}, depth * std::sin(angle)};
+    for (const int node : corners)
+      if (distance(node) > distance(*front) - k_same) wedge.nodes.push_back(node);
+    each_contact_point([&](ContactPoint& point) {
+      if (ranges::find(wedge.nodes, point.node) != wedge.nodes.end()) point.width += 2 * wedge.lift;
+    });
+    setup_.wedges.push_back(std::move(wedge));
+  }
+
   void add() {
-    if (entry_.has("at")) {
-      if (kind_.place == FixingPlace::feet || kind_.place == FixingPlace::front)
-        entry_.fail("at", "a " + std::string(kind_.word) + " finds the corners of the base by itself");
-      return add_one(entry_.vector("at"), entry_.name());
-    }
+    if (entry_.has("at") && kind_.place == FixingPlace::feet)
+      entry_.fail("at", "a " + std::string(kind_.word) + " finds the corners of the base by itself");
+    if (entry_.has("at")) return add_one(entry_.vector("at"), entry_.name());
     if (kind_.place == FixingPlace::top && body().solid)
       return add_one(nearest_on_block(body(), start_centre() + k_above * Vec3::UnitZ()), entry_.name());
     const std::vector<int> nodes = find_nodes();
     for (std::size_t k = 0; k < nodes.size(); ++k)
       add_one(start_.position[nodes[k]],
-              entry_.name() + (nodes.size() > 1 ? "-" + std::to_string(k + 1) : ""), nodes.size());
+              entry_.name() + (nodes.size() > 1 ? "-" + std::to_string(k + 1) : ""));
   }
 
  private:
@@ -164,6 +195,30 @@ class Fixing {
     return nodes;
   }
 
+  template <class F>
+  void each_contact_point(F f) const {
+    for (int p = 0; p < body().contact_point_count; ++p)
+      f(setup_.model.contact_points[body().first_contact_point + p]);
+  }
+
+  // By which the body can be turned about `pivot` towards the wall until it touches it, rad, `most` at most.
+  double leaning_angle(const Target& wall, const Vec3& pivot, double most) const {
+    const auto room = [&](double angle) {
+      double least = std::numeric_limits<double>::infinity();
+      each_contact_point([&](const ContactPoint& point) {
+        const Vec3 arm = x(point.node) - pivot;
+        least = std::min(least, wall.distance(pivot) + wall.normal.dot(arm) * std::cos(angle) -
+                                    arm.z() * std::sin(angle) - point.width / 2);
+      });
+      return least;
+    };
+    if (room(most) >= 0) return most;
+    double free = 0;
+    for (double step = most / 2; step > k_turned_least; step /= 2)
+      if (room(free + step) >= 0) free += step;
+    return free;
+  }
+
   Target nearest_wall() const {
     if (target_.wall) return target_;
     std::optional<Target> nearest;
@@ -181,20 +236,6 @@ class Fixing {
     switch (kind_.place) {
       case FixingPlace::feet:
         return feet();
-      case FixingPlace::front: {
-        const Target wall = nearest_wall();
-        std::vector<int> nodes = feet();
-        double farthest = 0, nearest = std::numeric_limits<double>::infinity();
-        for (const int node : nodes) {
-          farthest = std::max(farthest, wall.distance(x(node)));
-          nearest = std::min(nearest, wall.distance(x(node)));
-        }
-        if (target_.wall && nearest > k_leans_over)
-          entry_.fail("to", "is " + millimetres(nearest) + " from \"" + body().name +
-                                "\": a stopper leans it towards a wall within " + millimetres(k_leans_over));
-        std::erase_if(nodes, [&](int node) { return wall.distance(x(node)) < farthest - k_same; });
-        return nodes;
-      }
       case FixingPlace::top:
         return {best(nodes_of_body(body_, true), from_middle, [](int node) { return node; })};
       case FixingPlace::near:
@@ -279,8 +320,7 @@ class Fixing {
                            model().members[member].name + "\", is " + millimetres(distance) + " away");
   }
 
-  // One of `count`.
-  void add_one(Vec3 point, const std::string& name, std::size_t count = 1) {
+  void add_one(Vec3 point, const std::string& name) {
     Anchor anchor;
     anchor.name = name;
     anchor.fixing = kind_.word;
@@ -290,26 +330,18 @@ class Fixing {
     anchor.type = kind_.type;
     anchor.stiffness = entry_.has("stiffness") ? entry_.number("stiffness") : kind_.stiffness;
     anchor.strength = entry_.has("strength") ? entry_.number("strength") : kind_.strength;
-    double preload = entry_.has("preload") ? entry_.number("preload") : kind_.preload;
+    const double preload = entry_.has("preload") ? entry_.number("preload") : kind_.preload;
     check_reach("at", body_, point);
     if (target_.body >= 0) {
       anchor.other.body = target_.body;
       anchor.to = point_of_other(point);
-    } else if (kind_.place == FixingPlace::front) {
-      anchor.to = Vec3(point.x(), point.y(), -k_wedge);
-      const double weight = body().mass * setup_.parameters.gravity.norm();
-      preload += std::min(kind_.lift * anchor.stiffness, k_wedged * weight / static_cast<double>(count));
-      if (!setup_.run.settle)
-        entry_.fail("kind",
-                    "a stopper lifts its body, which comes to rest on it: write settle = true in [run]");
     } else {
       anchor.to = target_.on(point);
     }
     if (const double below = -target_.distance(point); target_.ceiling && below > 0)
       entry_.fail("to", "is " + millimetres(below) + " below the point of \"" + body().name +
                             "\" from which a " + kind_.word + " leads there");
-    const Vec3 foot = kind_.place == FixingPlace::front ? Vec3(point.x(), point.y(), 0) : anchor.to;
-    const double gap = (point - foot).norm();
+    const double gap = (point - anchor.to).norm();
     if (gap > kind_.reach)
       entry_.fail("to", "finds no point within " + millimetres(kind_.reach) + ": from \"" + body().name +
                             "\" to \"" + target_.name + "\" it is " + millimetres(gap) +
@@ -335,9 +367,17 @@ class Fixing {
 void read_fixings(const Entry& root, Setup& setup) {
   const std::vector<Entry> entries = root.entries("fixing");
   if (entries.empty()) return;
-  const State start = start_state(setup.model, setup.starts);
-  for (std::size_t k = 0; k < entries.size(); ++k)
-    Fixing(root, entries[k], start, static_cast<int>(k) + 1, setup).add();
+  State start = start_state(setup.model, setup.starts);
+  const auto each = [&](bool lifts, auto add) {
+    for (std::size_t k = 0; k < entries.size(); ++k)
+      if ((Fixing::kind_of(entries[k]).lift > 0) == lifts) {
+        Fixing fixing(root, entries[k], start, static_cast<int>(k) + 1, setup);
+        add(fixing);
+      }
+  };
+  each(true, [](Fixing& fixing) { fixing.lift(); });
+  start = start_state(setup.model, setup.starts);
+  each(false, [](Fixing& fixing) { fixing.add(); });
 }
 
 }  // namespace topple::io

@@ -179,8 +179,8 @@ TEST(LoadPath, lateral_buckling_is_called_so) {
     EXPECT_NEAR(std::abs(unstable->stability.direction.z()), 1, 1e-9);
     if (stop) {
       EXPECT_NEAR(run.state().load_factor, 0.62, 0.005);  // as printed, two digits
-      const std::string text = run.status().message(setup.model);
-      EXPECT_NE(text.find("buckles there, sideways to its loads"), std::string::npos) << text;
+      EXPECT_TRUE(run.status().ok() && run.stopped_early());
+      EXPECT_FALSE(unstable->converged);
     } else {  // on the straight branch, which is told to be unstable from there on
       ASSERT_TRUE(run.status().ok());
       EXPECT_EQ(run.state().load_factor, 1);
