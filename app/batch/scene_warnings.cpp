@@ -140,7 +140,9 @@ double alpha_for_tipping(const Model& model, const Parameters& p) {
 
 }  // namespace
 
-std::string soft_contact_warning(const Model& model, const Parameters& p) {
+std::string soft_contact_warning(const Setup& setup, const Parameters& p) {
+  const Model& model = setup.model;
+  if (setup.run.analysis != Analysis::dynamic) return "";
   const std::optional<double> early = early_tipping(model, p);
   const std::optional<double> rigid = rigid_alpha(model, p.contact, p.gravity);
   if (!early || !rigid || *early <= k_early) return "";
@@ -179,7 +181,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_anchors(setup, start, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
-  for (std::string words : {soft_contact_warning(setup.model, setup.parameters), bending_warning(setup)})
+  for (std::string words : {soft_contact_warning(setup, setup.parameters), bending_warning(setup)})
     if (!words.empty()) list.push_back(std::move(words));
   warn_of_shakes(setup.parameters.shakes, list);
   return list;

@@ -272,8 +272,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["static"] = load_steps_json(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
   out["warnings"] = run_warnings(run);
-  if (const std::string soft = soft_contact_warning(run.setup().model, run.setup().parameters);
-      !soft.empty() && !is_static(run.setup()))
+  if (const std::string soft = soft_contact_warning(run.setup(), run.setup().parameters); !soft.empty())
     out["warnings"].push_back(soft);
   return out;
 }

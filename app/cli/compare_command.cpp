@@ -229,8 +229,10 @@ void add_outcome(Table& table, const ordered_json& body) {
 std::string holds(const ordered_json& anchor) {
   if (anchor.is_null()) return "-";
   const std::string peak = text(anchor, "peak_force_N", 1, 1);
-  return anchor["broke"].get<bool>() ? peak + ", broke at " + text(anchor, "break_time_s", 1, 3) + " s"
-                                     : peak;
+  if (anchor["broke"].get<bool>()) return peak + ", broke at " + text(anchor, "break_time_s", 1, 3) + " s";
+  if (anchor["strength_N"].is_null() || anchor["peak_force_N"].is_null()) return peak;
+  return peak + ", " + percent_of(anchor["peak_force_N"].get<double>(), anchor["strength_N"].get<double>()) +
+         " of its strength";
 }
 
 std::string leads_out(const ordered_json& way) {
@@ -255,7 +257,9 @@ std::string tables(const ordered_json& result) {
   outcomes.row("status", result["a"]["status"], result["b"]["status"]);
   for (const ordered_json& body : result["bodies"]) add_outcome(outcomes, body);
   for (const ordered_json& one : result["anchors"])
-    outcomes.row(one["name"].get<std::string>() + ": greatest force, N", holds(one["a"]), holds(one["b"]));
+    outcomes.row(fmt::format("{} on {}: greatest force, N", one["name"].get<std::string>(),
+                             one[one["a"].is_null() ? "b" : "a"]["body"].get<std::string>()),
+                 holds(one["a"]), holds(one["b"]));
   for (const ordered_json& one : result["ways"]) {
     const std::string place = one["name"];
     outcomes.row("way out from " + place, leads_out(one["a"]), leads_out(one["b"]));

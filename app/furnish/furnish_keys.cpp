@@ -78,7 +78,8 @@ void FurnishView::turn(int direction, bool fine) {
   }
   const RoomPiece* const piece = selected_piece();
   if (!piece) return;
-  const Spot spot{piece->spot.at, std::remainder(piece->spot.yaw + by, 2 * k_pi)};
+  Spot spot{piece->spot.at, std::remainder(piece->spot.yaw + by, 2 * k_pi)};
+  spot.at = off_walls({spot, piece->half}, wall_lines(room_.scene().setup.model));
   const Spot before = piece->spot;
   if (!change([piece = *piece, spot](const io::Scene& scene) { return with_moved(scene, piece, spot); }))
     return;

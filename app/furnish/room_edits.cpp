@@ -113,10 +113,10 @@ class Changes {
   std::vector<KeyChange> all_;
 };
 
-/// `stem`, or the first of "stem-2", "stem-3" ... that no entry of these tables is called.
+/// `stem`, or the first of "stem-2", "stem-3" ... that no entry of these tables is called, and that is not
+/// `taken`.
 std::string free_name(const Changes& changes, std::initializer_list<const char*> tables,
-                      const std::string& stem) {
-  std::set<std::string> taken;
+                      const std::string& stem, std::set<std::string> taken = {}) {
   for (const char* const table : tables)
     for (std::size_t k = 1; k <= changes.entries(table); ++k) {
       const Node* const written = changes.entry(table, k).find("name");
@@ -403,7 +403,9 @@ std::string with_ceiling(const io::Scene& scene, const std::optional<double>& he
 std::string with_fixing(const io::Scene& scene, const std::string& kind, const std::string& body,
                         const std::string& to) {
   Changes changes(scene);
-  const std::string name = free_name(changes, {"fixing", "anchor"}, kind);
+  std::set<std::string> points;  // of fixings, "wardrobe-L-bracket-1"
+  for (const Anchor& anchor : scene.setup.model.anchors) points.insert(anchor.name);
+  const std::string name = free_name(changes, {"fixing", "anchor"}, body + "-" + kind, std::move(points));
   changes.add_entry("fixing",
                     fmt::format("{{ name = {}, kind = {}, body = {}, to = {} }}", written_text(name),
                                 written_text(kind), written_text(body), written_text(to)));

@@ -68,6 +68,15 @@ std::vector<WallLine> wall_lines(const Model& model) {
   return walls;
 }
 
+Vec2 off_walls(const Footprint& piece, std::span<const WallLine> walls) {
+  Vec2 at = piece.spot.at;
+  for (const WallLine& wall : walls) {
+    const double gap = wall.normal.dot(at - wall.at) - half_along(piece, wall.normal);
+    if (gap < k_gap_at_wall) at += (k_gap_at_wall - gap) * wall.normal;
+  }
+  return at;
+}
+
 Spot snapped(const Footprint& piece, std::span<const Footprint> others, std::span<const WallLine> walls,
              bool turns) {
   Footprint now = piece;

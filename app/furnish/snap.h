@@ -32,6 +32,9 @@ std::vector<WallLine> wall_lines(const Model& model);
 /// Its back is at a wall.
 bool backs_wall(const Footprint& piece, std::span<const WallLine> walls);
 
+/// Where a piece comes to stand that would reach into walls, or nearer than k_gap_at_wall: off them.
+Vec2 off_walls(const Footprint& piece, std::span<const WallLine> walls);
+
 /// Moves a piece out of walls, else at most k_snap_reach in each direction: to k_gap_at_wall from a wall, to
 /// k_gap_at_piece from another piece with backs, fronts or middles in line, else to the grid. `turns`: one
 /// whose back can come to a wall that near turns its back to it.

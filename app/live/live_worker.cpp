@@ -150,8 +150,7 @@ void LiveWorker::step_once() {
   going_ = false;
   status_.kind = LiveStatus::Kind::over;
   std::vector<std::string> warnings = run_warnings(*run_);
-  if (const std::string soft = soft_contact_warning(run_->setup().model, run_->parameters());
-      !soft.empty() && !is_static(run_->setup()))
+  if (const std::string soft = soft_contact_warning(run_->setup(), run_->parameters()); !soft.empty())
     warnings.push_back(soft.substr(0, soft.find(';')));  // what to do about it is told by `check`
   status_.message = fmt::format("{}", fmt::join(warnings, "; "));
 }

@@ -96,7 +96,9 @@ class Controls {
       });
     for (const char* table : {"anchor", "fixing"})
       each(table, [&](const Node& entry, const std::string& path, const std::string& label) {
-        toggle(entry, path, label, page_words::k_in_place, window_words::k_anchors_heading);
+        const Node* const body = entry.find("body");
+        toggle(entry, path, body == nullptr ? label : label + " (" + body->text + ")", page_words::k_in_place,
+               window_words::k_anchors_heading);
       });
     return std::move(found_);
   }

@@ -58,6 +58,7 @@ struct Named {
 inline constexpr Named k_all[] = {
     {"recorded", {"recorded run", "記録した計算"}},
     {"changed", {"computed with your changes", "変更した条件で計算"}},
+    {"before", {"the run before this change", "この変更の前の計算"}},
     {"computing", {"computing …", "計算中 …"}},
     {"back", {"Back to the recorded run", "記録した計算に戻す"}},
     {"play", {"Play", "再生"}},

@@ -69,6 +69,9 @@ std::string held_in_words(const Player& player, int body) {
     if (in_place && study::holds(model, anchor, body))
       return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, anchor.name);
   }
+  for (const Wedge& wedge : player.scene().setup.wedges)
+    if (wedge.body == body)
+      return say(k_is_leaned, model.bodies[static_cast<std::size_t>(body)].name, wedge.name);
   return "";
 }
 

@@ -35,7 +35,7 @@ const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& shake);
 /// That a body with such an edge slides before it lifts. Empty: it does not.
 std::string slides_in_words(const Model& model, const Parameters& parameters, int body);
 
-/// That the criteria do not hold of a body that an anchor holds now. Empty: none does.
+/// That the criteria do not hold of a body that an anchor holds now, or a stopper leans. Empty: none does.
 std::string held_in_words(const Player& player, int body);
 
 /// Where the run up to the instant that is shown does not agree with the criteria: how, and why that may be.

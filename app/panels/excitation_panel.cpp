@@ -130,7 +130,10 @@ void draw_criteria(const Player& player, TeachingState& state) {
     for (int b = 0; b < furniture; ++b) {
       const std::string& name = model.bodies[static_cast<std::size_t>(b)].name;
       if (!has_limits(model, parameters, b))
-        ImGui::TextDisabled("%s", say(k_stands_not_freely, name).c_str());
+        ImGui::TextDisabled(
+            "%s",
+            say(slides_in_words(model, parameters, b).empty() ? k_stands_not_freely : k_slides_before, name)
+                .c_str());
       else if (list_entry(name, b == *state.body))
         state.body = b;
     }

@@ -12,6 +12,7 @@ inline constexpr Phrase k_no_standing_body{
     "床に自立する家具がないため、判定基準は適用できません。"};
 inline constexpr Phrase k_stands_not_freely{"{0} (held, on another, or bears one)",
                                             "{0}（固定・家具の上・家具を載せている）"};
+inline constexpr Phrase k_slides_before{"{0} (slides before it lifts)", "{0}（浮き上がる前に滑る）"};
 inline constexpr Phrase k_slides_first{
     "{0} slides before it can lift: friction is below b/h = {1:.2f}. The criteria, which are of blocks that "
     "do "
@@ -51,6 +52,10 @@ inline constexpr Phrase k_west_formula{
 inline constexpr Phrase k_is_held{
     "But {0} is held by {1}: the criteria are of a body that nothing holds; the run says what it does held.",
     "ただし {0} は {1} で固定されています。判定基準は固定のない家具のもので、固定の効果は計算が示します。"};
+inline constexpr Phrase k_is_leaned{
+    "But {0} leans back on {1}: the criteria are of a body that stands upright; the run says what it does "
+    "so.",
+    "ただし {0} は {1} で後ろに傾けてあります。判定基準は直立した家具のもので、その効果は計算が示します。"};
 inline constexpr Phrase k_run_differs{
     "In this run {0} has {1}. The criteria are for one push on a body alone that is at rest before",
     "この計算では {0} は{1}。判定基準は、静止した単独の家具への一度の押しに対するものです"};

@@ -171,8 +171,9 @@ void add_doors(const Room& room, const Vec3& shift, render::SceneFrame& out) {
     out.labels.push_back({above((a + b) / 2, k_door), door.name});
   }
   for (const Room::Place& place : room.places) {
-    out.rings.push_back({above(place.at, 0), {0, 0, 1}, static_cast<float>(room.person / 2), k_place_colour});
-    out.labels.push_back({above(place.at, 0), place.name});
+    const auto at = above(place.at, place.top);
+    out.rings.push_back({at, {0, 0, 1}, static_cast<float>(room.person / 2), k_place_colour});
+    out.labels.push_back({at, place.name});
   }
 }
 

@@ -184,6 +184,12 @@ std::string holding_table(ReportPage& page) {
                     bounded ? short_shown(a["strength_N"].get<double>()) : "\u2013", short_shown(peak),
                     share});
   }
+  for (const ordered_json& w : page.report().summary["wedges"]) {
+    assumed = true;
+    rows.push_back({escaped(w["name"].get<std::string>()), escaped(w["body"].get<std::string>()),
+                    page.say(words::k_lifted_by, short_shown(1e3 * w["lift_m"].get<double>())), "stopper",
+                    "\u2013", "\u2013", "\u2013", "\u2013"});
+  }
   std::vector<std::string> head;
   for (const Phrase* what :
        {&words::k_anchor_name, &words::k_anchor_of, &words::k_anchor_to, &words::k_anchor_kind,

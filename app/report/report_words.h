@@ -210,6 +210,7 @@ inline constexpr Phrase k_open_sides{
 
 // anchors
 inline constexpr Phrase k_anchors{"With and without anchors", "固定具の有無による違い"};
+inline constexpr Phrase k_lifted_by{"floor, {0} mm higher", "床（{0} mm 高い）"};
 inline constexpr Phrase k_anchors_text{"The same run with all of them removed:",
                                        "すべて取り外した場合との比較を示す。"};
 inline constexpr Phrase k_holding_breaks{"What holds the furniture does not last: {0}.",

@@ -23,10 +23,12 @@ struct Room {
     double at;     ///< m, of its middle, along() the wall from Wall::at
     double width;  ///< m
   };
-  /// Where a person stands when the run begins.
+  /// Where a person is when the run begins.
   struct Place {
     std::string name;
-    Vec2 at;  ///< m
+    Vec2 at;         ///< m
+    int on = -1;     ///< the body on which they lie or sit, and over which they walk; -1: they stand
+    double top = 0;  ///< m, its height
   };
   std::vector<Wall> walls;
   std::vector<Door> doors;

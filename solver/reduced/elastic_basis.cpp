@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
 #include "solver/element/beam.h"
 #include "solver/element/plasticity.h"
 #include "solver/element/section_forces.h"
@@ -122,6 +125,18 @@ bool same_body(const Model& model, const Body& a, const Body& b) {
   return true;
 }
 
+// What follows from the shapes.
+void complete(const Model& model, const Body& body, ElasticBasis& basis) {
+  basis.section = recover(model, body, basis.shape);
+  basis.residual_section = recover(model, body, basis.residual_shape);
+  basis.mode_yield = greatest_yield(model, body, basis.section);
+  basis.residual_yield = greatest_yield(model, body, basis.residual_section);
+  basis.mode_rotation = VectorXd::Zero(basis.modes);
+  for (int k = 0; k < basis.modes; ++k)
+    for (int i = 0; i < body.node_count; ++i)
+      basis.mode_rotation[k] = std::max(basis.mode_rotation[k], basis.shape.block<3, 1>(6 * i + 3, k).norm());
+}
+
 }  // namespace
 
 std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index) {
@@ -148,7 +163,6 @@ std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index)
     }
   basis->shape = all.rightCols(basis->modes);
   for (int k = 0; k < basis->modes; ++k) basis->frequency[k] = 2 * k_pi * modes[k_rigid + k].frequency;
-  basis->section = recover(model, body, basis->shape);
 
   const BlockLu lu = shifted_stiffness(model, body, k_shift * elementary::pow(basis->frequency[0], 2));
   const MatrixXd mass_all = mass_times(model, body, all);
@@ -159,15 +173,91 @@ std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index)
   residual -= mass_all * (all.transpose() * residual).eval();
   for (int c = 0; c < residual.cols(); ++c) lu.solve(residual.col(c).data());
   residual -= all * (mass_all.transpose() * residual).eval();
-  basis->residual_section = recover(model, body, residual);
+  complete(model, body, *basis);
+  return basis;
+}
 
-  basis->mode_yield = greatest_yield(model, body, basis->section);
-  basis->residual_yield = greatest_yield(model, body, basis->residual_section);
-  basis->mode_rotation = VectorXd::Zero(basis->modes);
-  for (int k = 0; k < basis->modes; ++k)
-    for (int i = 0; i < n; ++i)
-      basis->mode_rotation[k] =
-          std::max(basis->mode_rotation[k], basis->shape.block<3, 1>(6 * i + 3, k).norm());
+namespace {
+
+/// On a node of a body, reference axes.
+struct UnitForce {
+  int node;  ///< of the body
+  Vec3 along;
+};
+
+// Of its first anchors along their lines, then of the floor on its base; none: nothing holds it.
+std::vector<UnitForce> unit_forces(const Model& model, int index) {
+  constexpr std::size_t k_anchors = 2;
+  const Body& body = model.bodies[index];
+  std::vector<UnitForce> forces;
+  for (const Anchor& anchor : model.anchors) {
+    if (!(anchor.length > 0)) continue;
+    const Vec3 point = model.node_position[anchor.node] + anchor.arm;
+    for (const AnchorEnd& end : {anchor.own(), anchor.other})
+      if (end.body == index && forces.size() < k_anchors)
+        forces.push_back({end.node - body.first_node, (point - anchor.to).normalized()});
+  }
+  if (forces.empty()) return forces;
+  for (const int point : body.base_points)
+    forces.push_back({model.contact_points[point].node - body.first_node, Vec3::UnitZ()});
+  return forces;
+}
+
+}  // namespace
+
+std::shared_ptr<const ElasticBasis> with_attachments(const Model& model, int index) {
+  constexpr Eigen::Index k_most = 4;      // shapes
+  constexpr double k_independent = 1e-6;  // of a shape's square, what others leave of it
+  const Body& body = model.bodies[index];
+  const ElasticBasis& before = *body.elastic;
+  MatrixXd shapes(before.shape.rows(), 0), mass_shapes = shapes;
+  std::vector<UnitForce> forces;
+  for (const UnitForce& force : unit_forces(model, index)) {
+    if (shapes.cols() == k_most) break;
+    const VectorXd shape = before.residual_shape.middleCols<3>(3 * force.node) * force.along,
+                   mass_shape = mass_times(model, body, shape);
+    const double whole = shape.dot(mass_shape);
+    double left = whole;
+    if (shapes.cols() > 0) {
+      const VectorXd shared = mass_shapes.transpose() * shape;
+      left -= shared.dot((mass_shapes.transpose() * shapes).ldlt().solve(shared));
+    }
+    if (!(left > k_independent * whole)) continue;
+    const Eigen::Index n = shapes.cols();
+    shapes.conservativeResize(Eigen::NoChange, n + 1);
+    mass_shapes.conservativeResize(Eigen::NoChange, n + 1);
+    shapes.col(n) = shape;
+    mass_shapes.col(n) = mass_shape;
+    forces.push_back(force);
+  }
+  const auto added = static_cast<int>(forces.size());
+  if (added == 0) return body.elastic;
+  MatrixXd compliance(added, added);
+  for (int i = 0; i < added; ++i)
+    for (int k = 0; k < added; ++k)
+      compliance(i, k) = forces[i].along.dot(shapes.block<3, 1>(6 * forces[i].node, k));
+  const MatrixXd mass = mass_shapes.transpose() * shapes;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz((compliance + compliance.transpose()) / 2,
+                                                                (mass + mass.transpose()) / 2);
+  auto basis = std::make_shared<ElasticBasis>(before);
+  const int kept = std::min(before.modes, k_modes - added);
+  basis->modes = kept + added;
+  basis->shape.resize(Eigen::NoChange, basis->modes);
+  basis->shape << before.shape.leftCols(kept), shapes * ritz.eigenvectors();
+  for (int k = 0; k < added; ++k) basis->frequency[kept + k] = std::sqrt(ritz.eigenvalues()[k]);
+  // what modes that are gone gave is residual now, what the shapes give is not
+  const auto moves = [](const MatrixXd& shape, int k) {
+    VectorXd out(shape.rows() / 2);
+    for (Eigen::Index i = 0; i < shape.rows() / 6; ++i) out.segment<3>(3 * i) = shape.block<3, 1>(6 * i, k);
+    return out;
+  };
+  for (int k = kept; k < before.modes; ++k)
+    basis->residual_shape += before.shape.col(k) * moves(before.shape, k).transpose() /
+                             (before.frequency[k] * before.frequency[k]);
+  for (int k = kept; k < basis->modes; ++k)
+    basis->residual_shape -= basis->shape.col(k) * moves(basis->shape, k).transpose() /
+                             (basis->frequency[k] * basis->frequency[k]);
+  complete(model, body, *basis);
   return basis;
 }
 

@@ -26,6 +26,11 @@ struct ElasticBasis {
 /// the same, but for rounding, in another place.
 std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int body);
 
+/// The basis of an anchored body with the deflections that anchors and floor cause, in place of its highest
+/// modes: as a Ritz basis it shares a moment between them as the body does (static attachment shapes, Craig
+/// 1977). Pins have no line, and take none. The body's own: there is nothing to add.
+std::shared_ptr<const ElasticBasis> with_attachments(const Model& model, int body);
+
 /// Displacement of an anchor's end in a mode of its body, reference axes, 1/sqrt(kg).
 Vec3 anchor_shape(const Model& model, const AnchorEnd& end, int mode);
 

@@ -218,11 +218,12 @@ void Outcome::observe_forces(const Model& model, const std::vector<ContactForce>
   for (const ContactForce& f : forces) {
     const int b = model.node_body[model.contact_points[f.point].node];
     bodies_[b].peak_penetration = std::max(bodies_[b].peak_penetration, f.depth);
-    if (!is_floor(model.planes[f.plane])) continue;
-    total_force_[b] += f.normal;
+    const double up =
+        is_floor(model.planes[f.plane]) ? f.normal : std::max(0., f.force.z());  // a wall's grip
+    total_force_[b] += up;
     const int point = f.point - model.bodies[b].first_contact_point;
-    for (const int side : side_of_[b][point]) side_force_[b][side] += f.normal;
-    for (const int side : inner_of_[b][point]) inner_force_[b][side] += f.normal;
+    for (const int side : side_of_[b][point]) side_force_[b][side] += up;
+    for (const int side : inner_of_[b][point]) inner_force_[b][side] += up;
   }
   for (const MemberForce& f : between) {
     carry(model, f.elements.a, f.s, 0, f.force);

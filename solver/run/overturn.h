@@ -19,8 +19,9 @@ namespace topple {
 
 /// Share of the body's weight. A side has let go when it carries less than k_uplift, with what stands on the
 /// floor between it and the opposite side, while the floor carries more than k_closing; it has closed again
-/// when it carries more than k_closing itself. Two thresholds, or a resting side would chatter. On a floor
-/// that gives way an outer row of points sheds its load before a body whose inner rows bear begins to rock.
+/// when it carries more than k_closing itself. A wall that holds it up by friction counts as floor. Two
+/// thresholds, or a resting side would chatter. On a floor that gives way an outer row of points sheds its
+/// load before a body whose inner rows bear begins to rock.
 inline constexpr double k_uplift = 1e-3;
 inline constexpr double k_closing = 1e-2;
 

@@ -36,7 +36,7 @@ void observe_hits(const Room& room, const Model& model, std::span<const Vec3> po
     for (std::size_t p = 0; p < places.size(); ++p) {
       const Vec2& at = room.places[p].at;
       std::vector<PlaceOutcome::Hit>& hits = places[p].hits;
-      if (is_far(position, model.bodies[b], at, far)) continue;
+      if (b == room.places[p].on || is_far(position, model.bodies[b], at, far)) continue;
       if (ranges::find(hits, b, &PlaceOutcome::Hit::body) != hits.end()) continue;
       if (!print) print = footprint(model, position, b, k_person_height);
       if (!print) break;

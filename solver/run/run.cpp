@@ -127,6 +127,7 @@ void Run::find_acting(const State& state, Acting& acting) const {
   acting.contacts = contact_forces(setup_->model, now_.parameters, state, workspace_);
   acting.between_members = member_forces(workspace_);
   acting.sections = section_forces(workspace_);
+  if (path_) path_->add_weight(now_.parameters, state, acting.sections);
 }
 
 Snapshot Run::snapshot(double time) const {

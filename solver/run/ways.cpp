@@ -43,6 +43,17 @@ void hold(const Room& room, const RoomPlan& plan, const Vec2& at, Way& way) {
   way.blocked_by = std::move(on_him);
 }
 
+/// What may be in the way from a place.
+RoomPlan around(const RoomPlan& plan, const Room::Place& place) {
+  RoomPlan out;
+  for (std::size_t k = 0; k < plan.lying.size(); ++k) {
+    if (plan.body[k] == place.on) continue;
+    out.lying.push_back(plan.lying[k]);
+    out.body.push_back(plan.body[k]);
+  }
+  return out;
+}
+
 double length_of(const Room& room, const RoomPlan& plan, std::size_t place, const Way& way) {
   const auto line = shortest_way(room, plan, static_cast<int>(place), way.door);
   return line ? line->length : std::numeric_limits<double>::infinity();
@@ -66,15 +77,16 @@ std::vector<Way> ways(const Room& room, const RoomPlan& plan) {
   std::vector<Way> all(room.places.size());
   for (std::size_t p = 0; p < all.size(); ++p) {
     Way& best = all[p];
+    const RoomPlan own = around(plan, room.places[p]);
     for (int d = 0; d < static_cast<int>(room.doors.size()); ++d) {
-      const Way way = way_to(room, walls, plan, room.places[p].at, d);
+      const Way way = way_to(room, walls, own, room.places[p].at, d);
       const bool better = best.door < 0           ? true
                           : way.open != best.open ? way.open
                           : way.open ? length_of(room, plan, p, way) < length_of(room, plan, p, best)
                                      : way.widest > best.widest;
       if (better) best = way;
     }
-    if (best.door >= 0) hold(room, plan, room.places[p].at, best);
+    if (best.door >= 0) hold(room, own, room.places[p].at, best);
   }
   return all;
 }
@@ -89,7 +101,8 @@ std::vector<bool> open_ways(const Run& run) {
 }
 
 std::optional<ShortestWay> shortest_way(const Room& room, const RoomPlan& plan, int place, int door) {
-  return shortest_way(room, faces(room), plan.lying, room.places[static_cast<std::size_t>(place)].at,
+  const Room::Place& from = room.places[static_cast<std::size_t>(place)];
+  return shortest_way(room, faces(room), around(plan, from).lying, from.at,
                       room.doors[static_cast<std::size_t>(door)], room.person);
 }
 

@@ -12,6 +12,7 @@
 #include "solver/frame/settle.h"
 #include "solver/math/rotation.h"
 #include "solver/step/controlled_way.h"
+#include "solver/step/own_weight.h"
 #include "solver/step/stability_of.h"
 
 namespace topple {
@@ -29,35 +30,25 @@ constexpr int k_patience = 8;  // partial corrections, after which what is left 
 constexpr double k_least_damping = 1e-6, k_damped_more = 10;  // of add_levenberg, 1 at most
 constexpr double k_further = 4;  // of the first correction: no later one of a frame that yields goes further
 
-// Weight of two elements of a member, held at its ends: half of it on each with the moments +-W L/12. The mid
-// node's 2/3 stand for the whole, and L is taken on either side of it, so that every derivative has a place.
-void distribute_weight(BodySystem& s, const Vec3& gravity, const std::vector<Vec3>& x) {
-  const Body& body = s.model.bodies[s.index];
-  for (int m = body.first_member; m < body.first_member + body.member_count; ++m) {
-    const Member& member = s.model.members[m];
-    for (int e = member.first_element; e + 1 < member.first_element + member.element_count; e += 2) {
-      const int a = s.model.elements[e].node[0] - s.first, mid = s.model.elements[e].node[1] - s.first,
-                b = s.model.elements[e + 1].node[1] - s.first;
-      const Vec3 weight = s.model.node_mass[s.first + mid] * gravity;
-      s.force[mid] -= weight;
-      const auto hold = [&](int end) {
-        s.force[end] += weight / 2;
-        s.moment[end] += (x[mid] - x[end]).cross(weight) / 4;
-        Mat6 block = Mat6::Zero();
-        block.bottomLeftCorner<3, 3>() = skew(weight) / 4;
-        s.lu.add(end, mid, block);
-        s.lu.add(end, end, Mat6(-block));
-      };
-      hold(a);
-      hold(b);
-    }
-  }
-}
-
 // Six numbers per node, of the last evaluation.
 void unbalance(const BodySystem& s, std::vector<double>& forces) {
   for (int i = 0; i < s.count; ++i)
     for (int k = 0; k < 6; ++k) forces[6 * i + k] = k < 3 ? s.force[i][k] : s.moment[i][k - 3];
+}
+
+// Of an element at a trial motion.
+SectionResponse response_at(const BodySystem& s, const BodyMotion& at, std::size_t n) {
+  const auto [e, i, j] = s.own_elements[n];
+  const Element& element = s.model.elements[e];
+  return respond(
+      element, s.elements[n],
+      beam_strain(element, beam_ends(at.position[i], at.rotation[i], at.position[j], at.rotation[j])));
+}
+
+bool flows_anywhere(const BodySystem& s, const BodyMotion& at) {
+  for (std::size_t n = 0; n < s.elements.size(); ++n)
+    if (response_at(s, at, n).flows()) return true;
+  return false;
 }
 
 // Whether what is left is no more than what rounding of the positions makes, beside 1e-8 of what the sections
@@ -66,13 +57,9 @@ void unbalance(const BodySystem& s, std::vector<double>& forces) {
 bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<double>& forces) {
   constexpr double k_share = 1e-8, k_rounding = 4 * std::numeric_limits<double>::epsilon();
   std::vector<double> allowed(forces.size(), 0.);
-  bool flows = false;  // a mechanism without hinges is in balance wherever it is: that is none
   for (std::size_t n = 0; n < s.elements.size(); ++n) {
     const auto [e, i, j] = s.own_elements[n];
     const Element& element = s.model.elements[e];
-    const BeamStrain strain =
-        beam_strain(element, beam_ends(at.position[i], at.rotation[i], at.position[j], at.rotation[j]));
-    flows = flows || respond(element, s.elements[n], strain).flows();
     const double bears = k_share * element.capacity.tail<3>().minCoeff();
     if (!std::isfinite(bears)) continue;
     const Vec3 force = k_rounding * element.normal_stiffness.maxCoeff() / element.length *
@@ -88,7 +75,7 @@ bool is_balanced(const BodySystem& s, const BodyMotion& at, const std::vector<do
   }
   for (std::size_t k = 0; k < forces.size(); ++k)
     if (!(std::abs(forces[k]) <= allowed[k])) return false;
-  return flows;
+  return flows_anywhere(s, at);  // a mechanism without hinges is in balance wherever it is: that is none
 }
 
 // The greatest of a correction, m, its node, and whether the trial is another equilibrium's.
@@ -339,6 +326,8 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
     }
     evaluate(s, still, state, factor);
     status.stability = stability_of(s, step.growth);
+    if (!status.stability.stable() && flows_anywhere(s, trial))
+      status.stability.loss = Stability::Loss::mechanism;
     if (settings_.stop_at_instability && !status.stability.stable()) return blame(status.node);
     status.kind = StepStatus::Kind::ok;
     return status;
@@ -418,6 +407,11 @@ void LoadPath::accept(const Parameters& still, double factor, State& state) {
     energy.anchor += held.anchor;
   }
   state.load_factor = factor;
+}
+
+void LoadPath::add_weight(const Parameters& parameters, const State& state,
+                          std::vector<SectionForces>& sections) const {
+  for (const auto& system : systems_) topple::add_weight(*system, parameters.gravity, state, sections);
 }
 
 // How far a load step's share of the loads moves what is controlled from here. With arc length it is the way

@@ -54,6 +54,10 @@ class LoadPath {
   /// equilibrium found, and State::step counts it when it is new. State::time becomes the load factor, with
   /// displacement control the share of the load steps.
   StepStatus advance(const Parameters& parameters, State& state);
+  /// Adds to section forces what the weight does between nodes, of bodies that do not yield: there it stands
+  /// at the ends of each pair of elements alone.
+  void add_weight(const Parameters& parameters, const State& state,
+                  std::vector<SectionForces>& sections) const;
   /// Of the last equilibrium found, the least stable body's.
   const Stability& stability() const { return stability_; }
 

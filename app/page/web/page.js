@@ -143,7 +143,8 @@ function fromWorker(event) {
   if (message.kind === 'map') return showMap(message.map);
   byId('progress').hidden = true;
   if (message.kind === 'trouble') {
-    byId('source').textContent = '';
+    byId('source').textContent = page.words.before;
+    byId('back').hidden = false;
     return complain(message.message);
   }
   page.changed = page.controls.some((control, i) => control.value !== page.values[i]);

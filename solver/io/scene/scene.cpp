@@ -9,6 +9,7 @@
 #include "solver/io/scene/scene_check.h"
 #include "solver/io/scene/scene_file.h"
 #include "solver/io/scene/scene_read.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple::io {
 namespace {
@@ -69,6 +70,9 @@ Scene understand(Node root, const SceneSource& source, std::string text) {
   const std::vector<Entry> of_body = read_bodies(entry, scene.setup);
   read_anchors(entry, scene.setup);
   read_fixings(entry, scene.setup);
+  for (int b = 0; b < scene.setup.model.furniture_total(); ++b)
+    if (Body& body = scene.setup.model.bodies[b]; body.elastic)
+      body.elastic = with_attachments(scene.setup.model, b);
   choose_alpha(entry, scene.setup);
   check_planar(entry, scene.setup);
   read_probes(entry, scene.setup);

@@ -60,7 +60,8 @@ class Fixing {
   // Raises the corners of the base that are farthest from the wall, by contact points that reach lower there:
   // the body starts as it leans on them, or on the wall if it comes to lean there first.
   void lift() {
-    for (const char* key : {"at", "stiffness", "strength", "preload", "on"})
+    if (!entry_.flag("on")) return;
+    for (const char* key : {"at", "stiffness", "strength", "preload"})
       if (entry_.has(key))
         entry_.fail(key, "a stopper has none: it bears and rubs as the feet of its body do");
     const Target wall = nearest_wall();
@@ -321,6 +322,8 @@ class Fixing {
   }
 
   void add_one(Vec3 point, const std::string& name) {
+    if (ranges::find(model().anchors, name, &Anchor::name) != model().anchors.end())
+      entry_.fail("name", "\"" + name + "\" is that of a point of another fixing too");
     Anchor anchor;
     anchor.name = name;
     anchor.fixing = kind_.word;

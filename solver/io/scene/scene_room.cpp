@@ -1,6 +1,7 @@
 // Doors and places of a scene: keys and meaning.
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "solver/io/common/units.h"
 #include "solver/io/scene/scene_key_rows.h"
@@ -12,6 +13,7 @@ namespace topple::io {
 namespace {
 
 constexpr double k_far = 1e3, k_widest_door = 10;  // m
+constexpr double k_lies_on = 0.6;                  // m, height of a piece on which a person lies or sits
 
 std::string in_mm(double metres) {
   return short_number(std::round(1e4 * metres) / 10) + " mm";
@@ -55,8 +57,19 @@ void check_opening(const Entry& entry, const Room& room, const Room::Door& door)
       entry.fail("at", "is in the way of door \"" + other.name + "\"");
 }
 
-void check_place(const Entry& entry, const Room& room, const Setup& setup, const RoomPlan& plan,
-                 const Vec2& at) {
+double top_of(const Body& body, std::span<const Vec3> position) {
+  double top = 0;
+  for (const Vec3& x :
+       position.subspan(static_cast<std::size_t>(body.first_node), static_cast<std::size_t>(body.node_count)))
+    top = std::max(top, x.z());
+  return top;
+}
+
+Room::Place read_place(const Entry& entry, const Room& room, const Model& model, const RoomPlan& plan,
+                       std::span<const Vec3> position) {
+  const std::vector<double> numbers = entry.numbers("at");
+  const Vec2 at(numbers[0], numbers[1]);
+  Room::Place place{entry.name(), at};
   const std::string person = "; a person is " + in_mm(room.person) + " wide";
   for (const Room::Wall& wall : room.walls) {
     const double before = Room::before(wall, at);
@@ -67,10 +80,17 @@ void check_place(const Entry& entry, const Room& room, const Setup& setup, const
   }
   for (std::size_t k = 0; k < plan.lying.size(); ++k) {
     const double space = plan.lying[k].distance(at);
-    const std::string& body = setup.model.bodies[static_cast<std::size_t>(plan.body[k])].name;
-    if (space == 0) entry.fail("at", "lies inside \"" + body + "\"");
-    if (2 * space < room.person) entry.fail("at", "is " + in_mm(space) + " from \"" + body + "\"" + person);
+    const Body& body = model.bodies[static_cast<std::size_t>(plan.body[k])];
+    if (2 * space >= room.person) continue;
+    const double top = top_of(body, position) + plan.lying[k].radius;
+    if (space > 0) entry.fail("at", "is " + in_mm(space) + " from \"" + body.name + "\"" + person);
+    if (top > k_lies_on || place.on >= 0)
+      entry.fail("at", "lies inside \"" + body.name + "\", which is " + in_mm(top) + " high; up to " +
+                           in_mm(k_lies_on) + " one lies on it");
+    place.on = plan.body[k];
+    place.top = top;
   }
+  return place;
 }
 
 }  // namespace
@@ -89,8 +109,8 @@ void add_room_keys(std::vector<Key>& keys) {
   places.plain("name", KeyType::text, "name in the summary").absent_means("place-1, ...");
   places
       .numbers("at", 2, Dimension::length, "m", -k_far, k_far,
-               "x and y of where a person stands when the run begins, half of `run.person` from all that "
-               "stands there")
+               "x and y of where a person is when the run begins: half of `run.person` from all that stands "
+               "there, or on a piece no higher than 600 mm, as on a bed")
       .required();
 }
 
@@ -106,12 +126,10 @@ void read_room(const Entry& root, Setup& setup) {
     check_opening(entry, room, door);
     room.doors.push_back(door);
   }
-  const RoomPlan plan = room_plan(room, setup.model, start_state(setup.model, setup.starts).position);
-  for (const Entry& entry : places) {
-    const std::vector<double> at = entry.numbers("at");
-    check_place(entry, room, setup, plan, {at[0], at[1]});
-    room.places.push_back({entry.name(), {at[0], at[1]}});
-  }
+  const State start = start_state(setup.model, setup.starts);
+  const RoomPlan plan = room_plan(room, setup.model, start.position);
+  for (const Entry& entry : places)
+    room.places.push_back(read_place(entry, room, setup.model, plan, start.position));
 }
 
 }  // namespace topple::io

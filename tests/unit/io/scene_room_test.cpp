@@ -61,12 +61,22 @@ TEST(SceneRoom, a_person_stands_in_the_room_with_space_around) {
             "s.toml:18:6: place.desk.at: lies outside the room, 300 mm behind wall \"back\"");
   EXPECT_EQ(room_error(place("[-1.8, 0]")),
             "s.toml:18:6: place.desk.at: is 200 mm from wall \"back\"; a person is 500 mm wide");
-  EXPECT_EQ(room_error(place("[0.1, 0.1]")), "s.toml:18:6: place.desk.at: lies inside \"safe\"");
+  EXPECT_EQ(
+      room_error(place("[0.1, 0.1]")),
+      "s.toml:18:6: place.desk.at: lies inside \"safe\", which is 620 mm high; up to 600 mm one lies on it");
   EXPECT_EQ(room_error(place("[0.41, 0]")),
             "s.toml:18:6: place.desk.at: is 200 mm from \"safe\"; a person is 500 mm wide");
   EXPECT_EQ(room_error(place("[0.47, 0]")), "no error");
   EXPECT_EQ(room_error(place("[0.47, 0]") + "[run]\nperson = \"0.6 m\"\n"),
             "s.toml:18:6: place.desk.at: is 260 mm from \"safe\"; a person is 600 mm wide");
+}
+
+TEST(SceneRoom, a_person_lies_on_what_is_low) {
+  const Scene scene = parse_scene(k_room + place("[0.1, 0.1]"), "s.toml", {"block.1.size=[0.4, 0.5, 0.4]"});
+  EXPECT_EQ(scene.setup.room.places[0].on, 0);
+  EXPECT_NEAR(scene.setup.room.places[0].top, 0.42, 1e-12);
+  const Scene beside = parse_scene(k_room + place("[0.47, 0]"), "s.toml", {"block.1.size=[0.4, 0.5, 0.4]"});
+  EXPECT_EQ(beside.setup.room.places[0].on, -1);
 }
 
 TEST(SceneRoom, names_are_used_once) {

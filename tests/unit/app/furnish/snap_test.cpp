@@ -52,6 +52,16 @@ TEST(Snap, behind_a_wall_it_comes_back_into_the_room) {
   EXPECT_NEAR(snapped(footprint(-2, 0.3), {}, walls, true).at.x(), -2 + 0.2 + k_gap_at_wall, 1e-12);
 }
 
+TEST(Snap, turned_beside_a_wall_it_stands_off_its_corner) {
+  const WallLine wall{{0, 0}, {1, 0}};
+  const Footprint turned{{{0.2, 1}, k_pi / 4}, {0.2, 0.45}};
+  const Vec2 at = off_walls(turned, std::span(&wall, 1));
+  EXPECT_NEAR(at.x(), (0.2 + 0.45) / std::sqrt(2) + k_gap_at_wall, 1e-12);
+  EXPECT_EQ(at.y(), 1);
+  const Footprint clear{{{2, 1}, k_pi / 4}, {0.2, 0.45}};
+  EXPECT_EQ(off_walls(clear, std::span(&wall, 1)), clear.spot.at);
+}
+
 TEST(Snap, in_a_corner_it_stands_off_both_walls) {
   const std::vector<WallLine> walls{k_back, k_side};
   const Spot spot = snapped(footprint(-1.75, 1.5), {}, walls, true);

@@ -65,6 +65,24 @@ TEST(Ways, a_gap_of_510_mm_lets_a_person_pass_and_one_of_490_mm_does_not) {
     }
 }
 
+// From a bed of 1 m by 2 m, with a cupboard across the room beside it: over the bed there is a way of 0.6 m.
+TEST(Ways, who_lies_on_a_piece_walks_over_it) {
+  Room room = closed_room();
+  const RoomPlan plan = plan_of({box(1, 0, 2, 1), box(2.5, -0.7, 0.4, 2.6)});
+  EXPECT_TRUE(ways(room, plan)[0].caught);
+  EXPECT_EQ(ways(room, plan)[0].blocked_by, std::vector<int>{0});
+  room.places[0].on = 0;
+  const Way over = ways(room, plan)[0];
+  EXPECT_TRUE(over.open && !over.caught);
+  EXPECT_NEAR(over.widest, 0.9, 1e-12);  // the door's
+  // around the cupboard's corners at 0.6 m, a quarter of a disc farther: no shorter than the straight parts
+  const auto line = shortest_way(room, plan, 0, over.door);
+  ASSERT_TRUE(line);
+  EXPECT_GT(line->length, std::hypot(1.3, 0.6) + std::hypot(3.3, 0.6));
+  const RoomPlan fallen = plan_of({box(1, 0, 2, 1), box(1.2, 0, 0.4, 1)});
+  EXPECT_EQ(ways(room, fallen)[0].blocked_by, std::vector<int>{1});
+}
+
 TEST(Ways, what_lies_before_a_door_closes_it_by_its_gaps_to_the_jambs) {
   const Room room = closed_room();
   const auto before_door = [&](double away) {

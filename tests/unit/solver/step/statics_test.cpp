@@ -244,6 +244,67 @@ TEST(Statics, own_weight_bends_a_cantilever_of_one_member_exactly) {
   EXPECT_NEAR(log_quaternion(run.state().rotation[1]).y(), angle, 1e-7 * angle);
 }
 
+// Moments w L^2/2 at a wall, w L^2/12 between two, half of that and the other way in the middle; the forces
+// are those in the middle of each half.
+TEST(Statics, own_weight_makes_the_section_forces_of_theory) {
+  for (const bool both : {false, true}) {
+    SCOPED_TRACE(both);
+    topple::Setup setup;
+    setup.model.materials.push_back(steel());
+    setup.model.sections.push_back(plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1));
+    FrameSpec spec;
+    spec.name = "beam";
+    spec.nodes = {{0, 0, 0}, {2, 0, 0}};
+    spec.members = {{{0, 1}, 0, 0}};
+    spec.supports.push_back({0, k_clamped});
+    if (both) spec.supports.push_back({1, k_clamped});
+    setup.starts = add_frame(setup.model, spec);
+    setup.parameters.gravity = {0, 0, -1e-3 * k_g};
+    setup.run = {.analysis = Analysis::statics, .settle = false};
+    topple::Run run(setup);
+    ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
+    const double weight = 7850 * 1e-4 * 2 * 1e-3 * k_g, moment = weight * 2;
+    const auto at = [&](int e, double xi) {
+      const Element& element = setup.model.elements[e];
+      const SectionForces forces = forces_along(run.sections()[e], element.length, element.s, xi);
+      // across the section's axes, world y and z
+      return std::pair((element.triad * forces.moment).y(), (element.triad * forces.normal).z());
+    };
+    const double sign = at(0, -1).first > 0 ? 1 : -1;
+    EXPECT_NEAR(sign * at(0, -1).first, moment / (both ? 12 : 2), 1e-6 * moment);
+    EXPECT_NEAR(sign * at(0, 1).first, both ? -moment / 24 : moment / 8, 1e-6 * moment);
+    EXPECT_NEAR(sign * at(1, -1).first, both ? -moment / 24 : moment / 8, 1e-6 * moment);
+    EXPECT_NEAR(sign * at(1, 1).first, both ? moment / 12 : 0, 1e-6 * moment);
+    EXPECT_NEAR(std::abs(at(0, 0).second), weight * (both ? 0.25 : 0.75), 1e-6 * weight);
+    EXPECT_NEAR(std::abs(at(1, 0).second), weight * 0.25, 1e-6 * weight);
+  }
+}
+
+// Where sections yield the hinge at the wall forms at w L^2/2: a cantilever that bears 2 % more stands.
+TEST(Statics, a_cantilever_yields_under_its_own_weight_at_the_moment_of_theory) {
+  const double weight = 7850 * 1e-4 * 2 * k_g;
+  for (const double over : {0.98, 1.02}) {
+    topple::Setup setup;
+    Material material = steel();
+    material.yield = 235e6;
+    setup.model.materials.push_back(material);
+    Section section = plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1);
+    section.zy = section.zz = section.zt = over * weight * 2 / 2 / material.yield;
+    setup.model.sections.push_back(section);
+    FrameSpec spec;
+    spec.name = "beam";
+    spec.nodes = {{0, 0, 0}, {2, 0, 0}};
+    spec.members = {{{0, 1}, 0, 0}};
+    spec.supports.push_back({0, k_clamped});
+    setup.starts = add_frame(setup.model, spec);
+    setup.run = {.analysis = Analysis::statics, .settle = false};
+    topple::Run run(setup);
+    EXPECT_EQ(run.status().ok(), over > 1) << run.status().message(setup.model);
+    if (over < 1) continue;
+    EXPECT_NEAR(*run.outcome().bodies()[0].peak_yield_ratio, 1 / over, 0.01);
+  }
+}
+
 TEST(Statics, loads_with_a_history_follow_it_over_the_load_steps) {
   topple::Setup setup = chain(2, {0, 0, -0.1 * k_bending}, Vec3::Zero(), 4);
   setup.model.loads[0].history = {{0, 0}, {0.5, 1}, {1, 0}};
