@@ -109,13 +109,11 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
   if (estimate == 0) return "";  // a block, or nothing pushed it
-  const int impacts = body["impacts"].get<int>();
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
   const std::string bounds = may_strike ? " until it strikes something, from which a frame springs back"
-                             : impacts > 0
-                                 ? fmt::format(" before its {} impact{}, which enlarge{} that", impacts,
-                                               impacts > 1 ? "s" : "", impacts > 1 ? "" : "s")
+                             : body["impacts"].get<int>() > 0
+                                 ? " until it first lands, however lightly; each landing enlarges that"
                              : !body["first_beyond_critical_s"].is_null() ? " until it lands"
                                                                           : "";
   return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(), bounds);

@@ -154,6 +154,17 @@ std::optional<Vec2> FurnishView::wall_place_at(float x, float y) const {
   return at ? std::optional<Vec2>((*at / k_grid).array().round().matrix() * k_grid) : std::nullopt;
 }
 
+std::optional<FurnishView::PersonSpot> FurnishView::person_place_at(float x, float y) const {
+  double height = 0;
+  if (const auto body = body_at(x, y))
+    for (const RoomPiece& piece : room_.pieces())
+      if (piece.body == *body && piece.floor + piece.size.z() <= k_lies_on)
+        height = piece.floor + piece.size.z();
+  const auto at = on_level(sight_at(x, y), height);
+  if (!at) return std::nullopt;
+  return PersonSpot{(*at / k_grid).array().round().matrix() * k_grid, height};
+}
+
 std::optional<DoorSpot> FurnishView::door_at(float x, float y) const {
   const auto at = place_at(x, y);
   return at ? door_near(room_.scene().setup.model, *at) : std::nullopt;
@@ -236,8 +247,9 @@ void FurnishView::click(float x, float y) {
       break;
     }
     case Tool::Kind::person: {
-      const auto place = wall_place_at(x, y);
-      if (place && change([at = *place](const io::Scene& scene) { return with_person(scene, at); })) let_go();
+      const auto place = person_place_at(x, y);
+      if (place && change([at = place->at](const io::Scene& scene) { return with_person(scene, at); }))
+        let_go();
       break;
     }
     case Tool::Kind::fixing:

@@ -198,9 +198,10 @@ void FurnishView::draw_scene() {
   frame_changed_ = camera_changed_ = false;
 }
 
-std::optional<Eigen::Vector2f> FurnishView::pixel_of_floor(const Vec2& at) const {
-  const auto pixel = pixel_of(orbit_.camera(scene_.width / scene_.height), scene_.width, scene_.height,
-                              Eigen::Vector3f(static_cast<float>(at.x()), static_cast<float>(at.y()), 0));
+std::optional<Eigen::Vector2f> FurnishView::pixel_of_floor(const Vec2& at, double height) const {
+  const auto pixel = pixel_of(
+      orbit_.camera(scene_.width / scene_.height), scene_.width, scene_.height,
+      Eigen::Vector3f(static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(height)));
   if (!pixel) return std::nullopt;
   return Eigen::Vector2f(pixel->x() + scene_.left, pixel->y() + scene_.top);
 }
@@ -233,6 +234,7 @@ void FurnishView::draw_outline_at_mouse(const render::OverlayFonts& fonts) const
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!scene_.contains(mouse.x, mouse.y)) return;
   std::vector<Vec2> corners;
+  double height = 0;
   std::string words;
   if (tool_.kind == Tool::Kind::wall && tool_.from) {
     const auto to = wall_place_at(mouse.x, mouse.y);
@@ -245,18 +247,19 @@ void FurnishView::draw_outline_at_mouse(const render::OverlayFonts& fonts) const
     for (const double end : {-0.5, 0.5}) corners.push_back(door->middle + end * k_usual_door * door->along);
     words = fmt::format("{}, {:.2f} m", door->wall, door->at);
   } else if (tool_.kind == Tool::Kind::person) {
-    const auto at = wall_place_at(mouse.x, mouse.y);
-    if (!at) return;
+    const auto spot = person_place_at(mouse.x, mouse.y);
+    if (!spot) return;
+    height = spot->height;
     const double radius = room_.scene().setup.room.person / 2;
     for (int k = 0; k <= k_person_corners; ++k) {
       const double turn = 2 * k_pi * k / k_person_corners;
-      corners.push_back(*at + radius * Vec2(std::cos(turn), std::sin(turn)));
+      corners.push_back(spot->at + radius * Vec2(std::cos(turn), std::sin(turn)));
     }
-    words = fmt::format("{:.2f} m, {:.2f} m", at->x(), at->y());
+    words = fmt::format("{:.2f} m, {:.2f} m", spot->at.x(), spot->at.y());
   }
   std::vector<ImVec2> line;
   for (const Vec2& corner : corners)
-    if (const auto pixel = pixel_of_floor(corner)) line.emplace_back(pixel->x(), pixel->y());
+    if (const auto pixel = pixel_of_floor(corner, height)) line.emplace_back(pixel->x(), pixel->y());
   if (line.size() < 2) return;
   list.AddPolyline(line.data(), static_cast<int>(line.size()), theme().line, 0, 3 * scale_);
   draw_words_at_mouse(words, theme().text, fonts);

@@ -64,7 +64,7 @@ class FurnishView {
   void select(const std::string& name);
   void show(Tab tab) { tab_ = tab; }
   /// The pixel, from the upper left corner of the window, at which a place on the floor is seen.
-  std::optional<Eigen::Vector2f> pixel_of_floor(const Vec2& at) const;
+  std::optional<Eigen::Vector2f> pixel_of_floor(const Vec2& at, double height = 0) const;
   /// The next click puts a piece of this kind, a wall's end, a door, a person or a fixing's end.
   void arm_kind(const std::string& kind);
   void arm_wall();
@@ -131,6 +131,12 @@ class FurnishView {
   std::optional<Vec2> place_at(float x, float y) const;
   /// On the floor, on the grid.
   std::optional<Vec2> wall_place_at(float x, float y) const;
+  /// There, or on a low piece that is seen there; and its height, m.
+  struct PersonSpot {
+    Vec2 at;
+    double height;
+  };
+  std::optional<PersonSpot> person_place_at(float x, float y) const;
   std::optional<DoorSpot> door_at(float x, float y) const;
 
   bool press_with_control(const render::KeyPress& press);

@@ -138,7 +138,7 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
     direction = direction.norm() > 1e-6 ? Vec3(direction.normalized()) : Vec3(Vec3::UnitY());
     Painter painter(out, static_cast<std::uint32_t>(model.members.size() + k),
                     static_cast<std::uint32_t>(anchor.body), first_profile);
-    const bool strap = anchor.type == Anchor::Type::strap;
+    const bool strap = anchor.type == Anchor::Type::strap && length > 0;
     const Shape shape = strap ? band : rod;
     const render::Float4& colour = state == io::k_anchor_holds ? k_held_colour : k_idle_colour;
     if (state == io::k_anchor_away) continue;

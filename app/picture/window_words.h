@@ -36,6 +36,7 @@ inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°
                                  "傾いて静止、{0:.1f}°（限界 {1:.1f}° 超過）"};
 inline constexpr Phrase k_leaning{"leans {0:.1f}° of {1:.1f}°", "傾斜 {0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};
+inline constexpr Phrase k_in_the_air{"in the air, tilt {0:.0f}°", "空中、傾斜 {0:.0f}°"};
 inline constexpr Phrase k_slid{", slid {0:.0f} mm", "、すべり {0:.0f} mm"};
 inline constexpr Phrase k_title_changed{"{0} (changed)", "{0}（変更あり）"};
 inline constexpr Phrase k_slid_farthest{", {0} slid {1:.0f} mm", "、{0}が最大 {1:.0f} mm すべった"};
@@ -60,6 +61,7 @@ inline constexpr Phrase k_holds{"holding", "有効"};
 inline constexpr Phrase k_slack{"slack", "たるみ"};
 inline constexpr Phrase k_broken_anchor{"broken", "破断"};
 inline constexpr Phrase k_pulls{"pulls {0:.0f} N", "引張 {0:.0f} N"};
+inline constexpr Phrase k_holds_with{"holds with {0:.0f} N", "保持 {0:.0f} N"};
 inline constexpr Phrase k_pushes{"pushes {0:.0f} N", "圧縮 {0:.0f} N"};
 inline constexpr Phrase k_of_strength{", {0} of its strength", "（耐力の{0}）"};
 inline constexpr Phrase k_anchors{"anchors: {0}", "固定具：{0}"};
@@ -309,7 +311,7 @@ inline constexpr Phrase k_words{"words", "文字"};
 inline constexpr Phrase k_words_about{"Title, captions and legend; in exports the floor's curve as well",
                                       "題名、説明、凡例。書き出しでは床の曲線も"};
 inline constexpr Phrase k_ghost{"ghost of the branch left", "離れた分岐の残像"};
-inline constexpr Phrase k_ghost_is{"pale: branch {0}, that was left", "淡色：離れた分岐 {0}"};
+inline constexpr Phrase k_ghost_is{"pale: branch {0}", "淡色：分岐 {0}"};
 inline constexpr Phrase k_front{"Front", "正面"};
 inline constexpr Phrase k_side{"Side", "側面"};
 inline constexpr Phrase k_top{"Top", "上面"};

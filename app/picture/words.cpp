@@ -31,6 +31,8 @@ constexpr std::size_t k_few_bodies = 5;
 
 using namespace window_words;
 
+constexpr double k_flies = 0.2;  // m/s: what nothing touches and moves faster is in the air
+
 enum class Stance { fallen, toppling, tipped, leaning, standing };
 
 bool moves_faster(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body,
@@ -48,6 +50,27 @@ Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, 
              ? (moves_faster(model, gravity, row, body, k_at_rest) ? Stance::toppling : Stance::tipped)
          : tilt > k_upright ? Stance::leaning
                             : Stance::standing;
+}
+
+/// Moves, and nothing touches or holds it.
+bool is_in_the_air(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t index) {
+  const Body& body = model.bodies[index];
+  const int planes = static_cast<int>(model.planes.size());
+  const auto any = [](const std::vector<float>& of, int first, int count, int stride) {
+    const auto begin = std::min(of.size(), static_cast<std::size_t>(first * stride)),
+               end = std::min(of.size(), static_cast<std::size_t>((first + count) * stride));
+    return std::any_of(of.begin() + static_cast<std::ptrdiff_t>(begin),
+                       of.begin() + static_cast<std::ptrdiff_t>(end), [](float f) { return f != 0; });
+  };
+  const auto is_its = [&](int node) { return model.node_body[node] == static_cast<int>(index); };
+  return moves_faster(model, gravity, row, index, k_flies) &&
+         !any(row.contact_force, body.first_contact_point * planes, body.contact_point_count * planes, 3) &&
+         !any(row.member_contact, body.first_element, body.element_count, 4) &&
+         !any(row.panel_contact, body.first_panel, body.panel_count, 5) &&
+         ranges::none_of(model.supports, [&](const Support& one) { return is_its(one.node); }) &&
+         ranges::none_of(model.anchors, [&](const Anchor& one) {
+           return one.body == static_cast<int>(index) || one.other.body == static_cast<int>(index);
+         });
 }
 
 /// Kinds of shakes that have words.
@@ -122,6 +145,7 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
   const double tilt = now.tilt * k_degrees, critical = now.critical_angle * k_degrees;
   std::string line = model.bodies[body].name + say(k_colon);
   if (critical == 0) return line + say(k_tilted, tilt);
+  if (is_in_the_air(model, gravity, row, body)) return line + say(k_in_the_air, tilt);
   switch (stance(model, gravity, row, body)) {
     case Stance::fallen:
       line += say(k_fallen, tilt);
@@ -203,7 +227,12 @@ std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::si
   const float state = state_of(anchor, now);
   if (state != io::k_anchor_holds || now.tension == 0) return line + say(anchor_state(state));
   const double force = std::abs(now.tension);
-  return line + say(now.tension > 0 ? k_pulls : k_pushes, force) +
+  const bool pin = anchor.length == 0;  // in any direction
+  return line +
+         say(pin               ? k_holds_with
+             : now.tension > 0 ? k_pulls
+                               : k_pushes,
+             force) +
          (std::isfinite(anchor.strength) ? say(k_of_strength, percent_of(force, anchor.strength)) : "");
 }
 

@@ -33,7 +33,13 @@ std::string medians(const ReportPage& page, const study::FragilityResults& found
         const std::optional<study::Interval> step = curve.step();
         const bool never =
             std::ranges::all_of(curve.levels, [](const study::Level& level) { return level.hits == 0; });
-        row.push_back(page.say(never ? words::k_in_no_run : step ? words::k_jumps : words::k_no_curve));
+        const bool steady = std::ranges::is_sorted(curve.levels, {}, [](const study::Level& level) {
+          return static_cast<double>(level.hits) / std::max(level.runs, 1);
+        });
+        row.push_back(page.say(never    ? words::k_in_no_run
+                               : !step  ? words::k_no_curve
+                               : steady ? words::k_jumps
+                                        : words::k_rises_and_falls));
         row.push_back(step ? interval(*step) : "\u2013");
         row.emplace_back("\u2013");
       }

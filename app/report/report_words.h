@@ -289,6 +289,7 @@ inline constexpr Phrase k_median{"median, gal", "中央値 [gal]"};
 inline constexpr Phrase k_median_interval{"95 % interval, gal", "95 %信頼区間 [gal]"};
 inline constexpr Phrase k_in_no_run{"in no run", "該当なし"};
 inline constexpr Phrase k_jumps{"a step within", "急変"};
+inline constexpr Phrase k_rises_and_falls{"rises and falls within", "増減する範囲"};
 inline constexpr Phrase k_no_curve{"no curve", "当てはめ不可"};
 inline constexpr Phrase k_of_west{"West, gal", "West [gal]"};
 inline constexpr Phrase k_of_ishiyama{"Ishiyama, gal", "石山 [gal]"};

@@ -11,6 +11,8 @@
 namespace topple {
 namespace {
 
+constexpr double k_break_part = 0.01;  // of a step that resolves its spring: the last one before it breaks
+
 // The bodies on which it acts.
 void mark(const Model& model, int k, std::vector<char>& changed) {
   for (const int body : {model.anchors[k].body, model.anchors[k].other.body})
@@ -43,6 +45,15 @@ AnchorPoint place_of(const Model& model, const State& state, const AnchorEnd& en
       rate += s.rate[m] * shape;
     }
   return {s.position + s.rotation * arm, s.velocity + s.rotation * (s.angular_velocity.cross(arm) + rate)};
+}
+
+// By the rate at which it is stretched now; infinite: it is not.
+double time_to_break(const Model& model, const State& state, int k, const Vec3& d, const Vec3& velocity) {
+  const Anchor& anchor = model.anchors[k];
+  const double length = d.norm(), tension = anchor_force_at(model, state, k, state.anchors[k]).tension;
+  const double rate = length > 0 ? d.dot(velocity) / length * (tension < 0 ? -1 : 1) : 0;
+  if (!(rate > 0)) return std::numeric_limits<double>::infinity();
+  return std::max(anchor.strength - std::abs(tension), 0.) / (anchor.stiffness * rate);
 }
 
 }  // namespace
@@ -112,7 +123,9 @@ double anchor_look_ahead(const Model& model, const State& state) {
     const Vec3 d = point.at - target.at;
     const double length = d.norm(), gap = std::abs(length - now.length);
     if (holds(anchor, now, length) || !(length > 0)) {
-      limit = std::min(limit, part);
+      limit = std::min({limit, part,
+                        std::max(k_break_part * part,
+                                 time_to_break(model, state, k, d, point.velocity - target.velocity))});
       continue;
     }
     const double rate = d.dot(point.velocity - target.velocity) / length,

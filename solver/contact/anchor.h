@@ -2,7 +2,8 @@
 //
 //   d = at - to,  l = |d|,  N = k (l - l0),  F = -N d/l on the body at `at`,  U = k/2 (l - l0)^2
 //
-// and -F on the other body at `to`. With l0 = 0 it is a pin, F = -k d. N > 0 pulls. A strap holds where l >
+// and -F on the other body at `to`. With l0 = 0 it is a pin, F = -k d, N = k l; that of a strap bears no push
+// down: d_z counts as 0 where it is less. N > 0 pulls. A strap holds where l >
 // l0 only, a pole where l < l0 only, a bracket always. An anchor breaks for good at the end of the first step
 // that leaves |N| above its strength. The energy that it holds when it breaks or is taken away is booked as
 // EnergyLedger::released. Putting it in place sets l0 to the present l, so that it starts without force; a

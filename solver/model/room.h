@@ -8,6 +8,9 @@
 
 namespace topple {
 
+/// m: a person lies or sits on what is no higher.
+inline constexpr double k_lies_on = 0.6;
+
 /// Where the walls leave a side open, it is open: nobody leaves there, but everybody may walk there.
 struct Room {
   struct Wall {

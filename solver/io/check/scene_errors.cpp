@@ -90,6 +90,10 @@ class Collector {
   bool leave_out(const SceneError& error) {
     if (error.path.empty() && !names_.empty())
       return stand_in();  // of the scene as a whole: no bodies are left
+    if (!error.place.override_text && !std::string_view(error.what()).starts_with(source_.origin + ":")) {
+      found_.push_back({{}, error.what()});  // of the file of a kind
+      return false;
+    }
     Trail trail, as_written;
     const bool there = find_place(root_, error.place, trail);
     find_place(written_, error.place, as_written);

@@ -78,7 +78,8 @@ void add_anchor(const Entry& entry, const State& start, const Vec3& point, doubl
   }
   const bool pushes = anchor.type == Anchor::Type::pole;
   const double length = (point - anchor.to).norm(), longer = (pushes ? 1 : -1) * preload / anchor.stiffness;
-  const bool pin = anchor.type == Anchor::Type::bracket && !(length > k_one_point);
+  const bool pin =
+      (anchor.type == Anchor::Type::bracket || !anchor.fixing.empty()) && !(length > k_one_point);
   if (pin && preload > 0)
     entry.fail("preload", "a pin, whose two ends are one point, has no direction to pull in");
   if (!pin && !(length > k_one_point)) entry.fail("to", "is where `point` is: the anchor has no length");

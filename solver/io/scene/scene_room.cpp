@@ -13,7 +13,6 @@ namespace topple::io {
 namespace {
 
 constexpr double k_far = 1e3, k_widest_door = 10;  // m
-constexpr double k_lies_on = 0.6;                  // m, height of a piece on which a person lies or sits
 
 std::string in_mm(double metres) {
   return short_number(std::round(1e4 * metres) / 10) + " mm";

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "solver/body/anchors.h"
 #include "solver/io/scene/fixing_kinds.h"
 #include "solver/io/scene/scene.h"
 #include "solver/model/building.h"
@@ -290,6 +291,28 @@ TEST(Fixing, a_point_and_another_fixing_have_two_names) {
                     "[[fixing]]\nname = \"it-2\"\nkind = \"strap\"\nbody = \"left\"\nto = \"back\"\n"
                     "at = [-0.15, 0, 1.7]\n"),
             "s.toml:33:8: fixing.it-2.name: \"it-2\" is that of a point of another fixing too");
+}
+
+// On a floor that gives way by 4 mm under the block's feet the mats bear none of its weight, nor what its
+// lower edge presses with while it leans; the corners that lift pull.
+TEST(Fixing, a_mat_bears_no_push) {
+  const Scene scene = parse_scene(blocks(fixing("mat", "floor")), "s.toml",
+                                  {"contact.alpha=\"100 kgf\"", "run.duration=\"8 s\""});
+  topple::Run run(scene.setup);
+  ASSERT_TRUE(run.status().ok()) << run.status().message(scene.setup.model);
+  for (const AnchorOutcome& mat : run.outcome().anchors()) EXPECT_LT(std::abs(mat.tension), 1e-6);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(scene.setup.model);
+  const Model& model = scene.setup.model;
+  const std::vector<AnchorForce> forces = anchor_forces(model, run.state());
+  int lifted = 0;
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    Vec3 away = anchor_point(model, run.state(), static_cast<int>(k)).at - model.anchors[k].to;
+    lifted += away.z() > 0;
+    away.z() = std::max(away.z(), 0.);
+    EXPECT_NEAR(forces[k].tension, model.anchors[k].stiffness * away.norm(), 1e-6);
+  }
+  EXPECT_GT(run.outcome().bodies()[0].peak_tilt, 1e-3);
+  EXPECT_LT(lifted, 4);
 }
 
 TEST(Fixing, every_kind_is_run_through) {

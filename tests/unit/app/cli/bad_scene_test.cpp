@@ -119,6 +119,19 @@ TEST_F(BadSceneTest, every_bad_scene_of_a_check_is_told) {
       << ended.err;
 }
 
+TEST_F(BadSceneTest, an_error_in_a_kind_of_ones_own_is_that_of_its_file) {
+  write_bytes(
+      "kind.toml",
+      "topple = 1\n[kind]\nsource = \"assumed\"\n[[block]]\nsize = [0.3, 0.3, 0.3]\nmass = 5\nmas = 5\n");
+  write_bytes("s.toml", "topple = 1\n[floor]\n[[furniture]]\nkind = \"kind.toml\"\nat = [0, 0]\n");
+  for (const char* command : {"check", "run"}) {
+    const Ended ended = topple({command, "s.toml"});
+    EXPECT_EQ(ended.code, 2);
+    EXPECT_TRUE(ended.err.starts_with("topple: kind.toml:7:1: block.1.mas: unknown key")) << ended.err;
+    EXPECT_EQ(std::count(ended.err.begin(), ended.err.end(), '\n'), 1) << ended.err;
+  }
+}
+
 TEST_F(BadSceneTest, all_errors_of_a_scene_are_told_at_once) {
   write_bytes("s.toml", changed("restitution = 0.5", "restitution = 5") +
                             "[[probe]]\nbody = \"no\"\n[[door]]\nwall = \"no\"\n");

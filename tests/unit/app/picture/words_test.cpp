@@ -63,6 +63,21 @@ TEST(Words, what_falls_has_not_fallen_before_it_lies) {
   EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 90°");
 }
 
+TEST(Words, what_nothing_touches_does_not_stand) {
+  const io::Scene scene = io::parse_scene(
+      "topple = 1\nfloor = {}\nrun = { duration = 1, settle = false }\n"
+      "block = [{ name = \"cube\", size = [0.2, 0.2, 0.2], mass = 8, at = [0, 0, 0.5] }]\n",
+      "s.toml");
+  topple::Run run(scene.setup);
+  const auto words = [&] {
+    return body_in_words(scene.setup.model, scene.setup.parameters.gravity, io::frame_row(run), 0);
+  };
+  while (run.time() < 0.2) ASSERT_TRUE(run.advance().ok());
+  EXPECT_EQ(words(), "cube: in the air, tilt 0°");
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  EXPECT_EQ(words(), "cube: standing");
+}
+
 TEST(Words, an_instant_has_the_digits_of_its_rows) {
   io::FrameRow row;
   row.time = 1.245;
