@@ -151,7 +151,8 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   EXPECT_NE(summary_table(s).find("off from a frame by about 0.004 % until it lands)\n"), std::string::npos)
       << summary_table(s);
   body["impacts"] = 78;
-  EXPECT_NE(summary_table(s).find("by about 0.004 % until it first lands, however lightly; each landing enlarges that)\n"),
+  EXPECT_NE(summary_table(s).find(
+                "by about 0.004 % until it first lands, however lightly; each landing enlarges that)\n"),
             std::string::npos);
 }
 
