@@ -117,8 +117,10 @@ PrecisionPlan plan_precision(io::Scene scene) {
   Model& model = setup.model;
   for (int b = 0; b < model.furniture_total(); ++b)
     if (Body& body = model.bodies[static_cast<std::size_t>(b)];
-        !body.elastic && can_be(model, b, BodyModel::rigid))
+        !body.elastic && can_be(model, b, BodyModel::rigid)) {
       body.elastic = elastic_basis(model, b);
+      if (body.elastic) body.elastic = with_attachments(model, b);
+    }
   if (setup.run.stop_when == StopWhen::never) setup.run.stop_when = StopWhen::all_overturned;
   plan.laws = laws_of(setup);
 
