@@ -84,7 +84,7 @@ std::string ways_in_words(const ordered_json& ways, double person) {
                          way["widest_m"].get<double>());
       if (!way["length_m"].is_null()) out += fmt::format(", {:.1f} m long", way["length_m"].get<double>());
     } else if (way["caught"].get<bool>()) {
-      out += "cannot leave, " + joined(way["blocked_by"]) + " is where they stand";
+      out += "cannot leave, " + joined(way["blocked_by"]) + " is where they are";
     } else {
       out += fmt::format("no way to {} for a person of {:g} m", way["door"].get<std::string>(), person);
       if (way["widest_m"].get<double>() > 0)

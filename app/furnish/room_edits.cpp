@@ -254,6 +254,12 @@ std::string with_moved(const io::Scene& scene, const RoomPiece& piece, const Spo
   refuse_held(changes, piece);
   const bool turned = !same_turn(spot.yaw, piece.spot.yaw);
   if (turned && piece.table == "frame") throw io::InputError(say(fw::k_frame_turns_not, piece.name));
+  const std::vector<Room::Place>& places = scene.setup.room.places;
+  for (std::size_t p = 0; p < places.size(); ++p)  // who lies on it goes along
+    if (places[p].on == static_cast<int>(piece.body)) {
+      const Vec2 arm = Eigen::Rotation2Dd(spot.yaw - piece.spot.yaw) * (places[p].at - piece.spot.at);
+      changes.set("place", p + 1, "at", place_text(spot.at + arm, 0));
+    }
   const std::string number = std::to_string(piece.number);
   const Node& entry = changes.entry(piece.table, piece.number);
   if (piece.copy && (!turned || copies_of(changes, piece) > 1)) {

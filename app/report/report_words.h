@@ -41,7 +41,7 @@ inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts 
 inline constexpr Phrase k_is_hit{"“{0}” is hit by “{1}” after {2} s.", "「{0}」に{2}秒で「{1}」が当たる。"};
 inline constexpr Phrase k_is_shut_in{"“{0}” has no way out any more: {1}.",
                                      "「{0}」から扉まで通れなくなる（{1}）。"};
-inline constexpr Phrase k_is_caught{"“{0}” cannot leave: {1} has come to where they stand.",
+inline constexpr Phrase k_is_caught{"“{0}” cannot leave: {1} has come to where they are.",
                                     "「{0}」の居場所に{1}がかかり、動けない。"};
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};

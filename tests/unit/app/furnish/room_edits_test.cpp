@@ -255,6 +255,18 @@ TEST(RoomEdits, a_door_goes_into_the_nearest_wall_at_its_foot) {
                          Vec2::Zero()));
 }
 
+TEST(RoomEdits, who_lies_on_a_bed_goes_along) {
+  const io::Scene scene = scene_of(
+      "topple = 1\n[floor]\n[[furniture]]\nkind = \"bed\"\nat = [0, 0]\n[[place]]\nname = \"sleeper\"\nat = "
+      "[0.3, 0]\n"
+      "[[place]]\nname = \"other\"\nat = [0, 3]\n");
+  const io::Scene after = scene_of(with_moved(scene, piece_in(scene, "bed"), {{1, 0.5}, k_pi / 2}));
+  ASSERT_EQ(after.setup.room.places.size(), 2u);
+  EXPECT_LT((after.setup.room.places[0].at - Vec2(1, 0.8)).norm(), 1e-6);
+  EXPECT_GE(after.setup.room.places[0].on, 0);
+  EXPECT_EQ(after.setup.room.places[1].at, Vec2(0, 3));
+}
+
 TEST(RoomEdits, people_have_names_of_their_own_and_can_be_taken_away) {
   const std::string one = with_person(scene_of(k_room), {0.5, -0.25});
   expect_kept(k_room, one);
