@@ -64,8 +64,9 @@ inline constexpr Phrase k_hint_wall_to{"A wall: click a second place. Its face w
                                        "壁：もう1点をクリック。表面は家具の側を向きます。"};
 inline constexpr Phrase k_hint_door{"A door: click where it is in a wall.",
                                     "扉：壁の位置をクリックしてください。"};
-inline constexpr Phrase k_hint_person{"A person: click where they stand when the shake begins.",
-                                      "人：揺れ始めに立つ場所をクリックしてください。"};
+inline constexpr Phrase k_hint_person{
+    "A person: click where they are when the shake begins, on the floor or a bed.",
+    "人：揺れ始めにいる場所（床またはベッドの上）をクリックしてください。"};
 inline constexpr Phrase k_hint_fixing_from{"{0}: click the piece that it holds.",
                                            "{0}：固定する家具をクリックしてください。"};
 inline constexpr Phrase k_hint_fixing_to{
