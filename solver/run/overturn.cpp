@@ -59,7 +59,7 @@ bool is_base_supported(const Model& model, int index) {
   });
 }
 
-/// Something pushes it up, as a wedge or a pole does.
+/// Something pushes it up, as a pole does.
 bool is_propped(const Model& model, int index) {
   return std::any_of(model.anchors.begin(), model.anchors.end(), [&](const Anchor& anchor) {
     return anchor.body == index && anchor.type == Anchor::Type::pole;

@@ -123,7 +123,7 @@ struct BodyOutcome {
   struct Side {
     bool open = false;             ///< it has let go and not closed again
     bool counts = false;           ///< the body has turned by k_uplift_angle since
-    bool borne_otherwise = false;  ///< from the first state on, as by a wedge: it has not let go
+    bool borne_otherwise = false;  ///< from the first state on, as by a pole: it has not let go
     double since = 0;              ///< s, when it let go
     Vec3 vertical = Vec3::Zero();  ///< then, in the body's axes
   };

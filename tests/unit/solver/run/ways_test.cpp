@@ -65,7 +65,7 @@ TEST(Ways, a_gap_of_510_mm_lets_a_person_pass_and_one_of_490_mm_does_not) {
     }
 }
 
-// From a bed of 1 m by 2 m, with a cupboard across the room beside it: over the bed there is a way of 0.6 m.
+// From a bed of 1 m by 2 m, with a cupboard across the room behind its foot that leaves 1.4 m.
 TEST(Ways, who_lies_on_a_piece_walks_over_it) {
   Room room = closed_room();
   const RoomPlan plan = plan_of({box(1, 0, 2, 1), box(2.5, -0.7, 0.4, 2.6)});

@@ -220,20 +220,32 @@ TEST(Statics, mechanism_is_named) {
   EXPECT_EQ(run.state().load_factor, 0);
 }
 
-// Distributed weight: fixed-end forces and moments make the ends of two elements exact.
-TEST(Statics, own_weight_bends_a_cantilever_of_one_member_exactly) {
+/// Members of one element pair along x, clamped at their start, which nothing but their weight bends.
+topple::Setup heavy_beams(double length, const Section& section, const Material& material, double gravity,
+                          bool clamped_at_both_ends = false, const std::vector<Vec3>& copies = {}) {
   topple::Setup setup;
-  Material material = steel();
   setup.model.materials.push_back(material);
-  setup.model.sections.push_back(plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1));
+  setup.model.sections.push_back(section);
   FrameSpec spec;
   spec.name = "beam";
-  spec.nodes = {{0, 0, 0}, {1, 0, 0}};
+  spec.nodes = {{0, 0, 0}, {length, 0, 0}};
   spec.members = {{{0, 1}, 0, 0}};
   spec.supports.push_back({0, k_clamped});
+  if (clamped_at_both_ends) spec.supports.push_back({1, k_clamped});
+  spec.copies = copies;
   setup.starts = add_frame(setup.model, spec);
-  setup.parameters.gravity = {0, 0, -1e-3 * k_g};
+  setup.parameters.gravity = {0, 0, -gravity};
   setup.run = {.analysis = Analysis::statics, .settle = false};
+  return setup;
+}
+
+Section thin() {
+  return plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1);
+}
+
+// Distributed weight: fixed-end forces and moments make the ends of two elements exact.
+TEST(Statics, own_weight_bends_a_cantilever_of_one_member_exactly) {
+  const topple::Setup setup = heavy_beams(1, thin(), steel(), 1e-3 * k_g);
   topple::Run run(setup);
   ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
   const double w = 7850 * 1e-4 * 1e-3 * k_g, bending = 205e9 * 1e-8, shear = 205e9 / 2.6 * 1e-4;
@@ -249,18 +261,7 @@ TEST(Statics, own_weight_bends_a_cantilever_of_one_member_exactly) {
 TEST(Statics, own_weight_makes_the_section_forces_of_theory) {
   for (const bool both : {false, true}) {
     SCOPED_TRACE(both);
-    topple::Setup setup;
-    setup.model.materials.push_back(steel());
-    setup.model.sections.push_back(plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1));
-    FrameSpec spec;
-    spec.name = "beam";
-    spec.nodes = {{0, 0, 0}, {2, 0, 0}};
-    spec.members = {{{0, 1}, 0, 0}};
-    spec.supports.push_back({0, k_clamped});
-    if (both) spec.supports.push_back({1, k_clamped});
-    setup.starts = add_frame(setup.model, spec);
-    setup.parameters.gravity = {0, 0, -1e-3 * k_g};
-    setup.run = {.analysis = Analysis::statics, .settle = false};
+    const topple::Setup setup = heavy_beams(2, thin(), steel(), 1e-3 * k_g, both);
     topple::Run run(setup);
     ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
     const double weight = 7850 * 1e-4 * 2 * 1e-3 * k_g, moment = weight * 2;
@@ -284,20 +285,11 @@ TEST(Statics, own_weight_makes_the_section_forces_of_theory) {
 TEST(Statics, a_cantilever_yields_under_its_own_weight_at_the_moment_of_theory) {
   const double weight = 7850 * 1e-4 * 2 * k_g;
   for (const double over : {0.98, 1.02}) {
-    topple::Setup setup;
     Material material = steel();
     material.yield = 235e6;
-    setup.model.materials.push_back(material);
-    Section section = plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1);
+    Section section = thin();
     section.zy = section.zz = section.zt = over * weight * 2 / 2 / material.yield;
-    setup.model.sections.push_back(section);
-    FrameSpec spec;
-    spec.name = "beam";
-    spec.nodes = {{0, 0, 0}, {2, 0, 0}};
-    spec.members = {{{0, 1}, 0, 0}};
-    spec.supports.push_back({0, k_clamped});
-    setup.starts = add_frame(setup.model, spec);
-    setup.run = {.analysis = Analysis::statics, .settle = false};
+    const topple::Setup setup = heavy_beams(2, section, material, k_g);
     topple::Run run(setup);
     EXPECT_EQ(run.status().ok(), over > 1) << run.status().message(setup.model);
     if (over < 1) continue;
@@ -355,17 +347,8 @@ TEST(Statics, cabinet_on_a_floor_takes_a_push_until_it_tips) {
 }
 
 TEST(Statics, own_weight_bends_every_body_alike) {
-  topple::Setup setup;
-  setup.model.materials.push_back(steel());
-  setup.model.sections.push_back(plain_section(1e-4, 1e-8, 1e-8, 2e-8, 1, 1));
-  FrameSpec spec;
-  spec.name = "beam";
-  spec.nodes = {{0, 0, 0}, {1, 0, 0}};
-  spec.members = {{{0, 1}, 0, 0}};
-  spec.supports.push_back({0, k_clamped});
-  spec.copies = {Vec3::Zero(), Vec3(0, 2, 0), Vec3(0, 4, 0)};
-  setup.starts = add_frame(setup.model, spec);
-  setup.run = {.analysis = Analysis::statics, .settle = false};
+  const std::vector<Vec3> copies{Vec3::Zero(), Vec3(0, 2, 0), Vec3(0, 4, 0)};
+  const topple::Setup setup = heavy_beams(1, thin(), steel(), k_g, false, copies);
   topple::Run run(setup);
   ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
   const State& state = run.state();
@@ -374,7 +357,7 @@ TEST(Statics, own_weight_bends_every_body_alike) {
     for (int i = 0; i < 3; ++i) {
       const int there = setup.model.bodies[copy].first_node + i;
       // coordinates of 4 m are rounded to 1e-15
-      EXPECT_LT((state.position[there] - state.position[i] - spec.copies[copy]).norm(), 1e-12) << copy;
+      EXPECT_LT((state.position[there] - state.position[i] - copies[copy]).norm(), 1e-12) << copy;
       EXPECT_LT((state.rotation[there].coeffs() - state.rotation[i].coeffs()).norm(), 1e-12) << copy;
     }
 }
