@@ -88,12 +88,14 @@ void LiveWorker::start_recording(const std::string& arithmetic) {
   }
 }
 
-// From the nearest checkpoint before it, of this run or of the recording that it replays.
+// From the nearest checkpoint before it, of this run or of the recording that it replays; not from one at the
+// start, where each branch begins with its own edits.
 Run LiveWorker::run_before(std::int32_t branch, std::int64_t step) const {
   const std::vector<Stretch> way = history_.way_to(branch);
   const auto on_way = [&](std::int32_t id, std::int64_t at) {
-    return at <= step && std::any_of(way.begin(), way.end(),
-                                     [&](const Stretch& s) { return s.branch == id && at <= s.last_step; });
+    return at > 0 && at <= step && std::any_of(way.begin(), way.end(), [&](const Stretch& s) {
+             return s.branch == id && at <= s.last_step;
+           });
   };
   const Point* nearest = nullptr;
   for (const Point& point : points_)
@@ -109,7 +111,7 @@ Run LiveWorker::run_before(std::int32_t branch, std::int64_t step) const {
     point.parameters = parameters_at(setup_, history_, branch, point.state.step);
     return Run(setup_, std::move(point));
   }
-  if (!read) return Run(setup_);
+  if (!read) return Run(setup_, parameters_at(setup_, history_, branch, 0));
   return Run(setup_, unpack(setup_.model, read->state), parameters_at(setup_, history_, branch, read->step));
 }
 
@@ -135,6 +137,7 @@ void LiveWorker::fork(const Fork& from) {
     set(replayed ? LiveStatus::Kind::replay : status_.kind);
     return;
   }
+  record_start();
   if (replayed) carry_on_recording();
   Branch branch{.id = 0, .parent = from.branch, .fork_step = from.step};
   for (const Branch& other : history_.branches) branch.id = std::max(branch.id, other.id + 1);
@@ -147,11 +150,12 @@ void LiveWorker::fork(const Fork& from) {
     report.head = nullptr;
   });
   run_.emplace(std::move(run));
-  observer_ = io::Observer(branch.id);
-  for (const Edit& edit : from.edits) change(edit);
-  record(observer_.observe(*run_));
+  if (!from.edits.empty()) change(from.edits);
+  begin_branch();
   report_head();
-  set(run_->over() ? LiveStatus::Kind::over : LiveStatus::Kind::halted);
+  set(!run_->status().ok() ? LiveStatus::Kind::failed
+      : run_->over()       ? LiveStatus::Kind::over
+                           : LiveStatus::Kind::halted);
 }
 
 // The new file holds all of the one that was replayed, and goes on from there.

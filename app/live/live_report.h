@@ -49,7 +49,8 @@ struct StepStability {
 struct LiveReport {
   std::vector<Branch> branches;
   std::vector<LoggedEdit> edits;
-  std::vector<RowPtr> rows;  ///< as recorded, in order within a branch
+  /// As recorded, in order within a branch. One of the start takes the place of another: edits change it.
+  std::vector<RowPtr> rows;
   std::vector<io::RecordedEvent> events;
   std::vector<StepStability> stabilities;  ///< of static runs
   RowPtr head;                             ///< the newest state of a live run; null: as before

@@ -21,7 +21,7 @@ void LiveRun::one_step() {
   worker_->post(OneStep{});
 }
 void LiveRun::edit(const Edit& edit) {
-  worker_->post(edit);
+  worker_->post(Edits{{edit}});
 }
 void LiveRun::fork(std::int32_t branch, std::int64_t step, std::vector<Edit> edits) {
   worker_->post(Fork{branch, step, std::move(edits)});

@@ -27,7 +27,7 @@ class LiveRun {
   void go(double speed);
   void halt();
   void one_step();
-  /// At the next step; ignored in a replay.
+  /// At the next step, before the first one at once (Run::edit); ignored in a replay.
   void edit(const Edit& edit);
   /// Leaves the present branch and begins a new one at the state that `branch` had at `step`, with `edits`.
   void fork(std::int32_t branch, std::int64_t step, std::vector<Edit> edits = {});

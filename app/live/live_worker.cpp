@@ -83,7 +83,7 @@ void LiveWorker::begin() {
   }
   if (stop_) return;
   start_recording(arithmetic());
-  record(observer_.observe(*run_));
+  begin_branch();
   report_head();
   set(LiveStatus::Kind::halted);
 }
@@ -106,8 +106,8 @@ void LiveWorker::obey(const Command& command) {
     if (going_ || !can_step()) return;
     step_once();
     report_head();
-  } else if (const auto* edit = std::get_if<Edit>(&command)) {
-    if (run_) change(*edit);
+  } else if (const auto* edits = std::get_if<Edits>(&command)) {
+    if (run_) change(edits->all);
   } else if (const auto* where = std::get_if<Fork>(&command)) {
     fork(*where);
     ++status_.forks;
@@ -115,16 +115,37 @@ void LiveWorker::obey(const Command& command) {
   }
 }
 
-void LiveWorker::change(const Edit& edit) {
+void LiveWorker::change(const std::vector<Edit>& edits) {
   status_.message.clear();
   status_.element = -1;
-  const LoggedEdit logged{status_.branch, run_->step(), run_->time(), edit};
-  run_->edit(edit);
-  history_.edits.push_back(logged);
-  if (recorder_) recorder_->post(logged);
-  publish([&logged](LiveReport& report) { report.edits.push_back(logged); });
+  if (status_.kind == LiveStatus::Kind::failed) status_.kind = LiveStatus::Kind::halted;
+  run_->edit(edits);
+  for (const Edit& edit : edits) {
+    const LoggedEdit logged{status_.branch, run_->step(), run_->time(), edit};
+    history_.edits.push_back(logged);
+    if (recorder_) recorder_->post(logged);
+    publish([&logged](LiveReport& report) { report.edits.push_back(logged); });
+  }
+  if (!run_->status().ok()) fail(run_->status());
+  if (run_->step() == 0) begin_branch();
   if (!going_) report_head();  // an anchor that was taken away is seen to be
-  set(status_.kind == LiveStatus::Kind::failed ? LiveStatus::Kind::halted : status_.kind);
+  set(status_.kind);
+}
+
+// What a run starts with is seen at once and recorded when it moves or is left: until then edits change it.
+void LiveWorker::begin_branch() {
+  observer_ = io::Observer(status_.branch);
+  io::Observation start = observer_.observe(*run_);
+  if (run_->step() > 0) return record(std::move(start));
+  publish([&start](LiveReport& report) {
+    for (const io::FrameRow& frame : start.frames)
+      report.rows.push_back(std::make_shared<const io::FrameRow>(frame));
+  });
+  start_ = std::move(start);
+}
+
+void LiveWorker::record_start() {
+  if (start_) record(*std::exchange(start_, std::nullopt));
 }
 
 void LiveWorker::fail(const StepStatus& status) {
@@ -136,6 +157,7 @@ void LiveWorker::fail(const StepStatus& status) {
 
 // Its status is published with the next report_head(), not before.
 void LiveWorker::step_once() {
+  record_start();
   const Clock::time_point start = Clock::now();
   const StepStatus status = advance_(*run_);
   wall_ += seconds_since(start);
@@ -223,6 +245,7 @@ void LiveWorker::set(LiveStatus::Kind kind) {
 
 void LiveWorker::finish() {
   if (!recorder_ || !run_) return;
+  record_start();
   record(observer_.last(*run_));
   const std::string status = !run_->status().ok()    ? "diverged"
                              : run_->stopped_early() ? "stopped"

@@ -25,12 +25,15 @@ struct Go {
 };
 struct Halt {};
 struct OneStep {};
+struct Edits {
+  std::vector<Edit> all;
+};
 struct Fork {
   std::int32_t branch;
   std::int64_t step;
   std::vector<Edit> edits;
 };
-using Command = std::variant<Go, Halt, OneStep, Edit, Fork>;
+using Command = std::variant<Go, Halt, OneStep, Edits, Fork>;
 
 /// A run at a checkpoint of a branch.
 struct Point {
@@ -54,7 +57,13 @@ class LiveWorker {
       // Steps asked for faster than they can be made do not pile up.
       const bool step = std::holds_alternative<OneStep>(command);
       if (step && !commands_.empty() && std::holds_alternative<OneStep>(commands_.back())) return;
-      commands_.push_back(std::move(command));
+      // Nor do edits, of which each makes a run that has not moved start anew.
+      auto* const edits = std::get_if<Edits>(&command);
+      auto* const before = commands_.empty() ? nullptr : std::get_if<Edits>(&commands_.back());
+      if (edits && before)
+        before->all.insert(before->all.end(), edits->all.begin(), edits->all.end());
+      else
+        commands_.push_back(std::move(command));
       pending_ = true;
     }
     changed_.notify_one();
@@ -104,7 +113,7 @@ class LiveWorker {
   void follow();
   void start_recording(const std::string& arithmetic);
   void obey(const Command& command);
-  void change(const Edit& edit);
+  void change(const std::vector<Edit>& edits);
   void fork(const Fork& from);
   void carry_on_recording();
   void fail(const StepStatus& status);
@@ -112,6 +121,8 @@ class LiveWorker {
   void step_once();
   void run_some();
   void record(io::Observation observation);
+  void begin_branch();
+  void record_start();
   template <typename Add>
   void publish(Add add);
   void report_head();
@@ -142,6 +153,7 @@ class LiveWorker {
   LiveStatus status_;
   std::optional<Run> run_;
   io::Observer observer_;
+  std::optional<io::Observation> start_;  // of a run that has not moved: not recorded yet
   History history_;
   std::vector<Point> points_;
   std::int64_t read_rows_ = 0;  // of the recording that is replayed

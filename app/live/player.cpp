@@ -110,6 +110,12 @@ void Player::take(LiveReport&& report) {
   if (report.head) head_ = std::move(report.head);
   if (!report.anchor_peaks.empty()) anchor_peaks_ = std::move(report.anchor_peaks);
   for (RowPtr& row : report.rows) {
+    std::vector<RowPtr>& own = rows_[row->branch];
+    if (row->step == 0 && own.size() == 1) {  // edits at the start changed it
+      own.front() = std::move(row);
+      rebuild = true;
+      continue;
+    }
     if (row->branch == shown_ && !rebuild) extend_way(row);
     keep(std::move(row));
   }

@@ -153,7 +153,7 @@ std::shared_ptr<Result> open(const std::filesystem::path& path) {
     for (std::int64_t k = 0; k < recording.checkpoint_count() && !signals.raised(); ++k) {
       const io::Checkpoint point = recording.checkpoint(k);
       const auto holds = [&](const Stretch& part) {
-        return part.branch == point.branch && point.step <= part.last_step;
+        return part.branch == point.branch && (part.branch == branch || point.step < part.last_step);
       };
       if (std::ranges::any_of(way, holds)) result->states.push_back({point.step, point.time, point.hash});
     }

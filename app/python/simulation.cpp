@@ -83,6 +83,7 @@ void Simulation::edit(const std::string& key, const std::string& value) {
   const Turn turn(*this);
   run_->edit(read_edit(key, value, run_->parameters(), model()));
   show();
+  expect_success();
 }
 
 std::shared_ptr<Simulation> Simulation::fork() {
@@ -156,7 +157,8 @@ under way; it can go on from there.)")
           py::arg("key"), py::arg("value"),
           R"(Changes a parameter from the present instant on: edit("shake.1.amplitude", "150 gal").
 
-Shakes, anchors and bodies are numbered from 1. Nothing jumps: amplitudes change over a quarter of a period.
+Shakes, anchors and bodies are numbered from 1. Nothing jumps: amplitudes change over a quarter of a period. Before
+the first step the simulation starts anew with the value, as with a scene that says it; RunError: that does not settle.
 Raises InputError, which says what can be changed.)")
       .def("fork", &Simulation::fork,
            "Another simulation that goes on from here, bit for bit as this one would; neither touches the "

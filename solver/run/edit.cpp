@@ -17,6 +17,11 @@ namespace {
 // on the floor off it; over two, one made 100 times as great does not.
 constexpr double k_contact_ramp = 2;
 
+/// An edit before a run has moved: what it sets is what the run starts with.
+bool starts_run(double t) {
+  return t <= 0;
+}
+
 void start_ramp(Shake& shake, double t) {
   if (t <= shake.start) return;
   shake.amplitude_before = shake_amplitude(shake, t);
@@ -34,6 +39,7 @@ void start_contact_ramp(const ContactLaw& law, const Model& model, double t, Par
 }
 
 void begin_anew(Shake& shake, double t) {
+  if (starts_run(t)) return;
   shake.start = t;
   shake.turned = shake.turns = 0;
   shake.ramp = {};
@@ -128,7 +134,10 @@ template <double ContactLaw::*value>
 void set_contact(const Edit& edit, const Model& model, double t, Parameters& p) {
   ContactLaw law = p.contact;
   law.*value = edit.value.x();
-  start_contact_ramp(law, model, t, p);
+  if (starts_run(t))
+    p.contact = law;
+  else
+    start_contact_ramp(law, model, t, p);
 }
 
 // A hand takes hold and lets go about as fast.

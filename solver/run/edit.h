@@ -88,7 +88,9 @@ Vec3 edited_value(const Parameters& parameters, Edit::Key key, int index);
 /// sweep, begin the shake anew, with acceleration 0 but for a rectangle; a sine becomes a pulse of half its
 /// period, or a sweep to ten times its frequency in 10 s. The rest changes at once: body models and anchors
 /// with the next step, which also books what another contact law holds in its springs; time_step ends
-/// adaptive stepping. The result depends on nothing but the arguments, so that edits can be repeated.
+/// adaptive stepping. At t = 0 all but a pull holds at once and no shake begins anew: the parameters are then
+/// those of a setup that says so. The result depends on nothing but the arguments, so that edits can be
+/// repeated.
 void apply(const Edit& edit, const Model& model, double t, Parameters& parameters);
 
 }  // namespace topple

@@ -18,39 +18,48 @@ constexpr double k_rest_speed = 1e-4;  // m/s, stop_when = "at-rest"
 constexpr double k_rest_floor = 1e-6;  // m/s^2
 constexpr double k_rest_for = 0.5;     // s
 
+/// Nothing has come of it yet.
+RunPoint point_at(const Setup& setup, State state, Parameters parameters) {
+  return {.state = std::move(state),
+          .parameters = std::move(parameters),
+          .outcome = Outcome(setup.model, setup.starts),
+          .probes = std::vector<ProbeOutcome>(setup.probes.size()),
+          .places = std::vector<PlaceOutcome>(setup.room.places.size())};
+}
+
 }  // namespace
 
-Run::Run(const Setup& setup)
+Run::Run(const Setup& setup, Parameters parameters)
     : setup_(&setup),
-      now_{.state = start_state(setup.model, setup.starts),
-           .parameters = setup.parameters,
-           .outcome = Outcome(setup.model, setup.starts),
-           .probes = std::vector<ProbeOutcome>(setup.probes.size()),
-           .places = std::vector<PlaceOutcome>(setup.room.places.size())},
+      now_(point_at(setup, start_state(setup.model, setup.starts), std::move(parameters))),
       workspace_(setup.model) {
+  start();
+}
+
+void Run::start() {
+  const Model& model = setup_->model;
+  const Parameters& parameters = now_.parameters;
+  State state = start_state(model, setup_->starts);
   if (is_static()) {
-    path_.emplace(setup.model, setup.run.statics);
-    status_ = path_->start(now_.parameters, setup.run.settle, now_.state);
-    if (!status_.ok()) return;
-    resume(setup.model, now_.state, workspace_);
-    observe();
-    return;
+    path_.emplace(model, setup_->run.statics);
+    status_ = path_->start(parameters, setup_->run.settle, state);
+    if (status_.ok()) resume(model, state, workspace_);
+  } else {
+    status_ = setup_->run.settle ? settle(model, parameters, state, workspace_) : StepStatus{};
+    if (status_.ok()) {
+      prepare(model, parameters, state, workspace_);
+      status_ = look_at_numbers(model, parameters, state, true);
+    }
   }
-  if (setup.run.settle) status_ = settle(setup.model, now_.parameters, now_.state, workspace_);
   if (!status_.ok()) return;
-  prepare(setup.model, now_.parameters, now_.state, workspace_);
-  status_ = look_at_numbers(setup.model, now_.parameters, now_.state, true);
-  if (!status_.ok()) return;
-  placed_ = false;
+  now_ = point_at(*setup_, std::move(state), std::move(now_.parameters));
+  placed_ = is_static();
+  events_.clear();
   observe();
 }
 
 Run::Run(const Setup& setup, State state, Parameters parameters)
-    : Run(setup, {.state = std::move(state),
-                  .parameters = std::move(parameters),
-                  .outcome = Outcome(setup.model, setup.starts),
-                  .probes = std::vector<ProbeOutcome>(setup.probes.size()),
-                  .places = std::vector<PlaceOutcome>(setup.room.places.size())}) {
+    : Run(setup, point_at(setup, std::move(state), std::move(parameters))) {
   if (!status_.ok()) return;
   observe();
   events_.clear();
@@ -109,9 +118,10 @@ void Run::advance_load() {
   if (now_.stopped_early) status_ = {};
 }
 
-void Run::edit(const Edit& edit) {
-  apply(edit, setup_->model, now_.state.time, now_.parameters);
+void Run::edit(std::span<const Edit> edits) {
+  for (const Edit& edit : edits) apply(edit, setup_->model, now_.state.time, now_.parameters);
   status_ = {};
+  if (step() == 0) start();
 }
 
 bool Run::over() const {

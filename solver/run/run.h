@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "solver/model/model.h"
@@ -91,7 +92,9 @@ struct Snapshot {
 class Run {
  public:
   /// Settles when asked to; `status()` tells what became of it.
-  explicit Run(const Setup& setup);
+  explicit Run(const Setup& setup) : Run(setup, setup.parameters) {}
+  /// The same from the start with other parameters.
+  Run(const Setup& setup, Parameters parameters);
   /// Continues from a checkpoint of the same setup; the outcome is counted from there. Over at once, with its
   /// status, when a number of it or of the parameters is not finite.
   Run(const Setup& setup, State state, Parameters parameters);
@@ -103,8 +106,11 @@ class Run {
 
   /// One accepted step, of time or of the loads. Must not be called when over().
   StepStatus advance();
-  /// Changes a parameter from the present state on; after it a step that failed may be tried again.
-  void edit(const Edit& edit);
+  /// Changes parameters from the present state on; after it a step that failed may be tried again. Before the
+  /// first step the run starts anew with them, bit for bit as with a setup that says so; where that does not
+  /// settle, `status()` tells it and the state stays.
+  void edit(std::span<const Edit> edits);
+  void edit(const Edit& edit) { this->edit({&edit, 1}); }
   /// Time is up, a stop condition holds or the last step failed.
   bool over() const;
   bool stopped_early() const { return now_.stopped_early; }
@@ -136,6 +142,7 @@ class Run {
   std::optional<double> stable_step() { return explicit_limit(workspace_); }
 
  private:
+  void start();
   bool is_static() const { return setup_->run.analysis == Analysis::statics; }
   void advance_load();
   // What acts at a state, as snapshots show it.

@@ -72,6 +72,34 @@ def test_forks_part_where_one_is_edited():
     assert edited.tilt[0] < trunk.tilt[0]
 
 
+def test_what_is_edited_at_the_start_is_what_the_scene_could_have_said():
+    keys = {"contact.alpha": "36000 kgf", "shake.1.amplitude": "170 gal", "contact.q": 1.2}
+    scene = topple.Scene("paper-a")
+    for key, value in keys.items():
+        scene[key] = value
+    said, edited = topple.Simulation(scene), topple.Simulation(topple.Scene("paper-a"))
+    for key, value in keys.items():
+        edited.edit(key, value)
+    assert edited.state_hash == said.state_hash
+    np.testing.assert_array_equal(edited.position, said.position)
+    forked = edited.fork()
+    for one in said, edited, forked:
+        one.run_until(3)
+    assert edited.state_hash == said.state_hash == forked.state_hash
+
+
+def test_an_edit_at_the_start_that_does_not_settle_says_so_and_may_be_taken_back():
+    simulation = topple.Simulation(topple.Scene("paper-a"))
+    before = simulation.state_hash
+    with pytest.raises(topple.RunError, match="^paper-a: .*does not come to rest"):
+        simulation.edit("contact.alpha", "0.001 kgf")
+    with pytest.raises(topple.RunError):
+        simulation.step()
+    simulation.edit("contact.alpha", "50 kgf")
+    assert simulation.state_hash == before
+    simulation.step()
+
+
 def test_what_is_pulled_tips_and_let_go_of_falls_back():
     scene = topple.Scene("cabinet")
     scene["shake.1.amplitude"] = "1 gal"

@@ -55,10 +55,10 @@ FrameRow frame_row_due(const Run& run, double time);
 class Observer {
  public:
   explicit Observer(std::int32_t branch = 0) : branch_(branch) {}
-  /// Call after each accepted step and once before the first: rows at multiples of the output interval,
-  /// within the step if need be, new events, a checkpoint once per simulated second. The first call always
-  /// gives a row and a checkpoint, so that a branch begins with its own; events that `run` has seen by then
-  /// are its parent's.
+  /// Call after each accepted step and once before the first, with the edits that are made at the start: rows
+  /// at multiples of the output interval, within the step if need be, new events, a checkpoint once per
+  /// simulated second. The first call always gives a row and a checkpoint, so that a branch begins with its
+  /// own; events that `run` has seen by then are its parent's.
   Observation observe(const Run& run);
   /// Row and checkpoint of the newest state, where observe() has not given them: when a run ends or a branch
   /// is left.

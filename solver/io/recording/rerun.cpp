@@ -20,31 +20,29 @@ State state_of(const Model& model, const Checkpoint& checkpoint) {
   }
 }
 
-/// The newest checkpoint that led to the fork of `branch`, or that of its parent at the fork itself.
+/// The newest checkpoint that led to the fork of `branch`, or that of its parent at the fork itself; none at
+/// the start, where each branch begins with its own edits.
 std::optional<Checkpoint> checkpoint_before(const Recording& recording, const Branch& branch) {
   std::optional<Checkpoint> newest;
   const std::vector<FrameKey>& all = recording.checkpoint_index();
   for (const Stretch& stretch : recording.history().way_to(branch.parent))
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (all[i].branch == stretch.branch && all[i].step <= std::min(stretch.last_step, branch.fork_step))
+      if (all[i].branch == stretch.branch && all[i].step > 0 &&
+          all[i].step <= std::min(stretch.last_step, branch.fork_step))
         newest = recording.checkpoint(static_cast<std::int64_t>(i));
   return newest;
 }
 
-/// The branch where it begins, before the edits at the start of the first one. Nothing when that cannot be
-/// reached.
+/// The branch where it begins. Nothing when that cannot be reached.
 std::optional<topple::Run> start(const Recording& recording, const Setup& setup, const Branch& branch) {
   const History& history = recording.history();
-  if (branch.parent < 0) {
-    topple::Run run(setup);
-    return run.status().ok() ? std::optional(std::move(run)) : std::nullopt;
-  }
-  if (!recording.can_go_on()) return std::nullopt;
+  if (branch.parent >= 0 && !recording.can_go_on()) return std::nullopt;
   const std::optional<Checkpoint> checkpoint = checkpoint_before(recording, branch);
-  if (!checkpoint) return std::nullopt;
-  State state = state_of(setup.model, *checkpoint);
-  Parameters parameters = parameters_at(setup, history, branch.id, state.step);
-  topple::Run run(setup, std::move(state), std::move(parameters));
+  const auto parameters = [&](std::int64_t step) { return parameters_at(setup, history, branch.id, step); };
+  topple::Run run = checkpoint
+                        ? topple::Run(setup, state_of(setup.model, *checkpoint), parameters(checkpoint->step))
+                        : topple::Run(setup, parameters(0));
+  if (!run.status().ok()) return std::nullopt;
   if (!repeat(run, history, branch.id, branch.fork_step)) return std::nullopt;
   return run;
 }
@@ -162,7 +160,8 @@ class Comparison {
     if (!run_ || !advance_to(row.step)) difference_ = {instant_of(row), "the run does not get there"};
     return !difference_;
   }
-  // What was recorded of a step was so before the edits at its end: those wait for the next step.
+  // What was recorded of a step was so before the edits at its end: those wait for the next step. A branch
+  // begins after its own.
   bool advance_to(std::int64_t step) {
     if (run_->step() >= step) return true;
     if (edits_wait_)
@@ -196,7 +195,7 @@ class Comparison {
   const Model& model_;
   const Branch& branch_;
   std::optional<topple::Run> run_;
-  bool edits_wait_ = branch_.parent < 0;          // those at run_'s step
+  bool edits_wait_ = false;                       // those at run_'s step
   const double begun_ = run_ ? run_->time() : 0;  // s
   std::optional<Difference> difference_;
   std::size_t next_frame_ = 0;

@@ -33,10 +33,9 @@ Axis axis_named(const std::string& option, const std::string& text, const char* 
 
 /// Before anything shakes. `edit`: of the key; value: SI.
 void set_at_once(const Model& model, double value, Edit edit, Parameters& parameters) {
-  constexpr double k_before = -1e9;  // s
   edit.value = edited_value(parameters, edit.key, edit.index);
   edit.value.x() = value;
-  apply(edit, model, k_before, parameters);
+  apply(edit, model, 0, parameters);
 }
 
 }  // namespace

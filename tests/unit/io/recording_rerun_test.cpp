@@ -282,6 +282,36 @@ TEST_F(RerunTest, a_changed_number_in_a_frame_is_told_with_its_step_and_element)
   EXPECT_TRUE(step_after_100(yielded.at.step));
 }
 
+TEST_F(RerunTest, branches_from_the_start_begin_with_their_own_edits) {
+  const Scene scene = parse_scene(k_scene, "test");
+  const auto write = [&scene](Recorder& recorder, std::int32_t branch, double alpha) {
+    topple::Run run(scene.setup);
+    const Edit edit{.key = Edit::Key::alpha, .value = Vec3(alpha, 0, 0)};
+    recorder.write(LoggedEdit{branch, 0, 0, edit});
+    run.edit(edit);
+    Observer observer(branch);
+    recorder.write(observer.observe(run));
+    while (run.step() < 100) {
+      EXPECT_TRUE(run.advance().ok());
+      recorder.write(observer.observe(run));
+    }
+    recorder.write(observer.last(run));
+  };
+  {
+    Recorder recorder(path("a.h5"), scene.name, scene.text, scene.setup.model);
+    write(recorder, 0, 1000);
+    recorder.write(Branch{1, 0, 0});
+    write(recorder, 1, 20000);
+    recorder.write(Branch{2, 1, 0});
+    write(recorder, 2, 5000);
+    recorder.finish("completed", "{}");
+  }
+  const Recording recording(path("a.h5"));
+  const Rerun result = again(recording);
+  EXPECT_EQ(result.checkpoints, recording.checkpoint_count());
+  EXPECT_TRUE(result.differences.empty() && result.damage.empty());
+}
+
 /// The scene of a cabinet that a record shakes, read from memory.
 Scene record_scene() {
   std::string text = k_scene, file = "time_s,ax_gal,ay_gal\n";

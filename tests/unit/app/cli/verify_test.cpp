@@ -16,13 +16,13 @@ class VerifyTest : public ProgramTest {
     io::Recorder recorder("a.h5", scene.name, scene.text, scene.setup.model);
     topple::Run run(scene.setup);
     io::Observer observer;
-    recorder.write(observer.observe(run));
     RunPoint fork = run.point();
     const auto go_on = [&](std::int32_t branch, const std::vector<Edit>& edits) {
       for (const Edit& edit : edits) {
         recorder.write(LoggedEdit{branch, run.state().step, run.state().time, edit});
         run.edit(edit);
       }
+      recorder.write(observer.observe(run));
       while (!run.over()) {
         ASSERT_TRUE(run.advance().ok());
         recorder.write(observer.observe(run));
@@ -36,7 +36,6 @@ class VerifyTest : public ProgramTest {
     recorder.write(Branch{1, 0, 100});
     run = topple::Run(scene.setup, fork);
     observer = io::Observer(1);
-    recorder.write(observer.observe(run));
     go_on(1, {{.key = Edit::Key::direction, .value = Vec3(1, 2, 0)},
               {.key = Edit::Key::integrator, .value = Vec3(1, 0, 0)},
               {.key = Edit::Key::want, .value = Vec3(1, 0, 0)},

@@ -108,6 +108,33 @@ TEST(AccuracyTest, errors_are_those_of_the_two_runs_it_stands_for) {
   EXPECT_NE(words[0].find("does not overturn"), std::string::npos) << words[0];
 }
 
+// Overturns at 1.955 s with 100 kgf, at 1.005 s with 50 kgf.
+TEST(AccuracyTest, a_run_that_begins_again_with_other_sliders_is_the_one_that_is_told_of) {
+  const auto scene = std::make_shared<const io::Scene>(io::load_scene("paper-a"));
+  LiveRun run({.scene = scene, .recording = {}, .output = {}});
+  Player player(scene, run);
+  const auto until = [&](auto done) { return eventually([&] { player.update(1. / 60); }, done); };
+  ASSERT_TRUE(until([&] { return player.can_edit(); }));
+  player.set_speed(k_most_speed);
+  player.step(1);
+  ASSERT_TRUE(until([&] { return player.row()->step == 1; }));
+  player.edit({Edit::Key::alpha, 0, Vec3(100 * k_standard_gravity, 0, 0)});
+  player.restart();
+  ASSERT_TRUE(until([&] { return player.history().branches.size() == 2 && player.can_edit(); }));
+  player.play();
+  ASSERT_TRUE(until([&] { return player.status().kind == LiveStatus::Kind::over; }));
+  const std::vector<io::RecordedEvent> events = player.events();
+  const auto fell = std::ranges::find_if(events, [](const io::RecordedEvent& e) {
+    return e.event.kind == Event::Kind::overturn && e.event.body == 0;
+  });
+  ASSERT_NE(fell, events.end());
+  topple::Setup setup = scene->setup;
+  for (const Edit& edit : player.edits_from(setup.parameters)) apply(edit, setup.model, 0, setup.parameters);
+  const auto accuracy = estimate_accuracy(setup);
+  ASSERT_TRUE(eventually([] {}, [&] { return accuracy->over(); }));
+  EXPECT_EQ(accuracy->result()->bodies[0].beyond_since, fell->time);
+}
+
 TEST(AccuracyTest, it_is_given_up_at_once) {
   const auto scene = live_scene(k_rocking, {"run.duration=1000"});
   const auto before = std::chrono::steady_clock::now();

@@ -389,6 +389,7 @@ TEST(Edit, of_alpha_lets_a_standing_cabinet_rise_without_leaving_the_floor) {
   topple::Setup setup = shaken(1);
   setup.parameters.contact.restitution = 0.5;
   topple::Run edited(setup);
+  ASSERT_TRUE(edited.advance().ok());
   edited.edit(set(Edit::Key::alpha, 25 * setup.parameters.contact.alpha));
   Parameters hard = setup.parameters;
   hard.contact.alpha *= 25;
