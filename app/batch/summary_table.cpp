@@ -223,7 +223,7 @@ std::string chance_line(const ordered_json& b) {
 std::string anchor_line(const ordered_json& a) {
   const double peak = a["peak_force_N"].get<double>();
   std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
-  if (!a["in_place"].get<bool>() && peak == 0)
+  if (was_never_in_place(a))
     return line + fmt::format("anchor {}: not in place\n", a["name"].get<std::string>());
   line += fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
   if (a["broke"].get<bool>())

@@ -228,6 +228,7 @@ void add_outcome(Table& table, const ordered_json& body) {
 
 std::string holds(const ordered_json& anchor) {
   if (anchor.is_null()) return "-";
+  if (was_never_in_place(anchor)) return "not in place";
   const std::string peak = text(anchor, "peak_force_N", 1, 1);
   if (anchor["broke"].get<bool>()) return peak + ", broke at " + text(anchor, "break_time_s", 1, 3) + " s";
   if (anchor["strength_N"].is_null() || anchor["peak_force_N"].is_null()) return peak;

@@ -228,7 +228,6 @@ int report_command(const ReportOptions& options) {
                 .nodes_at_end = {},
                 .spread = k_spread,
                 .trials = {},
-                .anchors = study::anchor_count(scene),
                 .without_anchors = {}};
   report.motion = study::floor_motion(scene.setup.parameters.shakes, report.summary["simulated_s"]);
   const io::Recording recording(temporary.path());

@@ -53,8 +53,7 @@ struct Report {
   /// null: there is no fragility, as the scene is not run as planar blocks
   std::shared_ptr<const study::FragilityPlan> fragility_plan = {};
   study::FragilityResults fragility = {};
-  int anchors = 0;
-  std::optional<nlohmann::ordered_json> without_anchors;  ///< summary of the run; absent: there are none
+  std::optional<nlohmann::ordered_json> without_anchors;  ///< summary of the run; absent: none is in place
   std::string page = {};                                  ///< live page beside the report; empty: none
 };
 

@@ -172,7 +172,10 @@ std::string holding_table(ReportPage& page) {
     const bool fixing = !a["fixing"].is_null(), bounded = !a["strength_N"].is_null();
     assumed = assumed || fixing;
     const double peak = a["peak_force_N"].get<double>();
-    std::string share = bounded ? percent_of(peak, a["strength_N"].get<double>()) : "\u2013";
+    const bool never = was_never_in_place(a);
+    std::string share = never     ? page.say(words::k_anchor_away)
+                        : bounded ? percent_of(peak, a["strength_N"].get<double>())
+                                  : "\u2013";
     if (a["broke"].get<bool>())
       share = page.say(words::k_anchor_broke, shown(a["break_time_s"].get<double>(), 2));
     rows.push_back({escaped(a["name"].get<std::string>()), escaped(a["body"].get<std::string>()),
@@ -181,8 +184,8 @@ std::string holding_table(ReportPage& page) {
                                                : escaped(a["other_end"]["body"].get<std::string>()),
                     escaped(a[fixing ? "fixing" : "type"].get<std::string>()),
                     short_shown(a["stiffness_N_m"].get<double>() / 1e3),
-                    bounded ? short_shown(a["strength_N"].get<double>()) : "\u2013", short_shown(peak),
-                    share});
+                    bounded ? short_shown(a["strength_N"].get<double>()) : "\u2013",
+                    never ? "\u2013" : short_shown(peak), share});
   }
   for (const ordered_json& w : page.report().summary["wedges"]) {
     assumed = true;
@@ -201,8 +204,9 @@ std::string holding_table(ReportPage& page) {
 }  // namespace
 
 std::string anchors_section(ReportPage& page) {
-  const ordered_json& without = *page.report().without_anchors;
   std::string out = holding_table(page);
+  if (!page.report().without_anchors) return page.section(words::k_anchors_away, out);
+  const ordered_json& without = *page.report().without_anchors;
   out += page.paragraph(page.say(words::k_anchors_text));
   if (without["status"] == "diverged")
     return page.section(

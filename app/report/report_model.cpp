@@ -128,7 +128,7 @@ std::string assumptions_section(ReportPage& page) {
                                               : std::string()));
   else
     list.push_back(page.say(words::k_frames_elastic));
-  if (page.report().anchors == 0) list.push_back(page.say(words::k_no_anchors));
+  if (!page.report().without_anchors) list.push_back(page.say(words::k_no_anchors));
   list.push_back(page.say(words::k_ends, short_shown(page.report().summary["simulated_s"].get<double>())));
   list.push_back(page.say(words::k_not_validated));
   std::string out = "<ul>\n";

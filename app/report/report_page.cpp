@@ -36,10 +36,13 @@ std::size_t most_tilted(const ReportPage& page) {
   return most;
 }
 
-bool is_held(const Model& model, std::size_t body) {
-  return std::ranges::any_of(model.anchors, [&](const Anchor& anchor) {
-    return anchor.body == static_cast<int>(body) || anchor.other.body == static_cast<int>(body);
-  });
+bool is_held(const Setup& setup, std::size_t body) {
+  const std::vector<Anchor>& anchors = setup.model.anchors;
+  for (std::size_t k = 0; k < anchors.size(); ++k)
+    if (setup.parameters.anchors[k] &&
+        (anchors[k].body == static_cast<int>(body) || anchors[k].other.body == static_cast<int>(body)))
+      return true;
+  return false;
 }
 
 /// By the share of the angle at which it would overturn; of bodies that have none, by the angle.
@@ -67,9 +70,9 @@ std::string verdict(const ReportPage& page) {
       return page.say(words::k_nothing_falls_far, page.name(most),
                       shown(body["peak_tilt_deg"].get<double>(), 2));
     const auto share = body["peak_critical_share"].get<double>();
-    const Phrase& said = share > 1                                         ? words::k_nothing_stays_over
-                         : is_held(page.report().scene->setup.model, most) ? words::k_nothing_falls_held
-                                                                           : words::k_nothing_falls;
+    const Phrase& said = share > 1                                   ? words::k_nothing_stays_over
+                         : is_held(page.report().scene->setup, most) ? words::k_nothing_falls_held
+                                                                     : words::k_nothing_falls;
     out = page.say(said, page.name(most), shown(share * *critical, 2), shown(*critical, 2));
     const ordered_json& e = page.report().summary["error_estimate"];
     const ordered_json tilt_error =
@@ -243,7 +246,7 @@ std::string report_page(const Report& report, Language language) {
   out += floor_section(page);
   out += falling_section(page);
   if (page.shows_ways()) out += ways_section(page);
-  if (report.without_anchors) out += anchors_section(page);
+  if (page.shows_anchors()) out += anchors_section(page);
   out += certain_section(page);
   out += assumptions_section(page);
   out += settings_section(page);

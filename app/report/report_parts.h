@@ -34,7 +34,10 @@ class ReportPage {
 
   /// Sections are numbered in the order in which they stand.
   int falling_section() const { return 2; }
-  int certain_section() const { return 3 + report_.without_anchors.has_value() + shows_ways(); }
+  int certain_section() const { return 3 + shows_anchors() + shows_ways(); }
+  bool shows_anchors() const {
+    return !report_.summary["anchors"].empty() || !report_.summary["wedges"].empty();
+  }
   bool shows_ways() const { return report_.summary.contains("ways"); }
   int next_section() { return ++section_; }
   int next_figure() { return ++figure_; }

@@ -210,6 +210,7 @@ inline constexpr Phrase k_open_sides{
 
 // anchors
 inline constexpr Phrase k_anchors{"With and without anchors", "固定具の有無による違い"};
+inline constexpr Phrase k_anchors_away{"Anchors, none of them in place", "固定具（すべて取り外した状態）"};
 inline constexpr Phrase k_lifted_by{"floor, {0} mm higher", "床（{0} mm 高い）"};
 inline constexpr Phrase k_anchors_text{"The same run with all of them removed:",
                                        "すべて取り外した場合との比較を示す。"};
@@ -225,6 +226,7 @@ inline constexpr Phrase k_anchor_strength{"strength, N", "強度 N"};
 inline constexpr Phrase k_anchor_peak{"greatest force, N", "最大力 N"};
 inline constexpr Phrase k_anchor_share{"of its strength", "強度比"};
 inline constexpr Phrase k_anchor_broke{"breaks at {0} s", "{0}秒で破断"};
+inline constexpr Phrase k_anchor_away{"not in place", "取り外し"};
 inline constexpr Phrase k_anchor_frame{"wall, floor or ceiling", "壁・床・天井"};
 inline constexpr Phrase k_assumed_fixings{
     "Fixings by name have the stiffness and strength that the scene gives; where it gives none, assumed ones "
@@ -362,8 +364,9 @@ inline constexpr Phrase k_frames_plastic{
     "Members yield as perfectly plastic hinges at their ends of elements{0}.",
     "部材は要素端の完全塑性ヒンジとして降伏する{0}。"};
 inline constexpr Phrase k_frames_break{" and may break", "（破断を含む）"};
-inline constexpr Phrase k_no_anchors{"No anchor, strap or pole holds the furniture: the scene has none.",
-                                     "固定具（ベルト、金具、突っ張り棒など）はない。"};
+inline constexpr Phrase k_no_anchors{
+    "No anchor, strap or pole holds the furniture: the scene has none in place.",
+    "家具を固定するもの（ベルト、金具、突っ張り棒など）はない。"};
 inline constexpr Phrase k_ends{
     "What would happen after {0} s is not seen. People and objects that the scene does not name are absent.",
     "{0}秒より後に起こることは計算していない。シーンにない人や物は存在しない。"};

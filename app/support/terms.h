@@ -36,6 +36,12 @@ inline std::string percent_of(double part, double whole) {
   return percent < 1 ? fmt::format("{:.1g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
+/// Of an anchor in a summary: it held nothing. One that was taken away or broke had a force.
+template <class Json>
+bool was_never_in_place(const Json& anchor) {
+  return !anchor["in_place"].template get<bool>() && anchor["peak_force_N"] == 0;
+}
+
 /// The member within which a node lies; null: the node is one of those that scenes name.
 inline const Member* member_within(const Model& model, int node) {
   for (const Member& member : model.members)

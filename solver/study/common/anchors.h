@@ -7,11 +7,8 @@
 
 namespace topple::study {
 
-/// Entries of [[anchor]] and [[fixing]] in the text of a scene.
-int anchor_count(const io::Scene& scene);
-
-/// The scene with every [[anchor]] and [[fixing]] taken away; none when it has none. Throws io::InputError
-/// when the rest is no scene.
+/// The scene with every [[anchor]] and [[fixing]] taken away; none when it has none in place. Throws
+/// io::InputError when the rest is no scene.
 std::optional<io::Scene> without_anchors(const io::Scene& scene);
 
 }  // namespace topple::study

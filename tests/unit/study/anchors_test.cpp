@@ -2,19 +2,25 @@
 
 #include <gtest/gtest.h>
 
+#include "solver/io/scene/scene_file.h"
+
 namespace topple::study {
 namespace {
 
 TEST(Anchors, a_scene_without_them_has_none_to_take_away) {
   const io::Scene scene = io::load_scene("paper-a");
-  EXPECT_EQ(anchor_count(scene), 0);
   EXPECT_FALSE(without_anchors(scene));
+}
+
+TEST(Anchors, that_are_not_in_place_hold_nothing) {
+  const std::vector<std::string> none{"anchor.1.on=false", "anchor.2.on=false"};
+  EXPECT_FALSE(without_anchors(io::load_scene("anchored", none)));
+  EXPECT_TRUE(without_anchors(io::load_scene("anchored", {none[0]})));
 }
 
 TEST(Anchors, all_of_them_are_taken_away_and_nothing_else) {
   const io::Scene bare = io::load_scene("near-fault");
-  io::Scene held = bare;
-  held.text += R"(
+  const io::Scene held = io::parse_scene(bare.text + R"(
 [[anchor]]
 name = "strap"
 body = "free"
@@ -22,14 +28,13 @@ point = [-0.19, 0, 1.7]
 to = [-0.25, 0, 1.7]
 type = "strap"
 stiffness = "50 kN/m"
-[[anchor]]
-body = "free"
-)";
-  EXPECT_EQ(anchor_count(held), 2);
+)",
+                                         bare.name, {}, io::kept_files(bare));
+  ASSERT_EQ(held.setup.model.anchors.size(), 1u);
   const auto rest = without_anchors(held);
   ASSERT_TRUE(rest);
-  EXPECT_EQ(rest->name, bare.name);
-  EXPECT_EQ(anchor_count(*rest), 0);
+  EXPECT_EQ(rest->name, held.name);
+  EXPECT_TRUE(rest->setup.model.anchors.empty());
   ASSERT_EQ(rest->files.size(), 1u);
   EXPECT_EQ(rest->files[0].bytes, bare.files[0].bytes);
   EXPECT_EQ(rest->setup.model.node_total(), bare.setup.model.node_total());

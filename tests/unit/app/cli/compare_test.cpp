@@ -47,6 +47,23 @@ TEST_F(CompareTest, what_differs_stands_with_both_values_and_units) {
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
 }
 
+TEST_F(CompareTest, anchors_that_are_not_in_place_are_said_to_be_so) {
+  write_bytes("strap.toml", k_shaken + k_straps);
+  EXPECT_EQ(topple({"run", "strap.toml", "--set", "anchor.weak.on=false", "--set", "anchor.strong.on=false",
+                    "-o", "away.h5", "--quiet"})
+                .code,
+            0);
+  const Ended ended = topple({"compare", "strap.toml", "away.h5"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  for (const char* name : {"weak", "strong"}) {
+    const std::size_t line = ended.out.find(std::string(name) + " on free: greatest force, N");
+    ASSERT_NE(line, std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.substr(line, ended.out.find('\n', line) - line).find("not in place"),
+              std::string::npos)
+        << ended.out;
+  }
+}
+
 TEST_F(CompareTest, bodies_of_one_side_have_a_dash_on_the_other) {
   const Ended ended = topple({"compare", "s.toml", "free-rocking", "--json", "-"});
   EXPECT_EQ(ended.code, 0) << ended.err;

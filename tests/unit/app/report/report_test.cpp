@@ -63,7 +63,8 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
   EXPECT_FALSE(holds(page(), "With and without anchors"));
   EXPECT_TRUE(holds(page(), "3. How certain this is"));
   EXPECT_TRUE(holds(page(), "No anchor, strap or pole holds the furniture"));
-  report_.anchors = 2;
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  tell_of(scene);
   report_.without_anchors = report_.summary;
   (*report_.without_anchors)["bodies"][0]["overturned"] = true;
   (*report_.without_anchors)["bodies"][0]["overturn_time_s"] = 0.25;
@@ -79,7 +80,6 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
 TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
   const io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
   tell_of(scene);
-  report_.anchors = 2;
   report_.without_anchors = report_.summary;
   const double force = report_.summary["anchors"][1]["peak_force_N"];
   ASSERT_GT(force, 0);
@@ -89,6 +89,18 @@ TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of
                                       100 * force / 2000)));
   EXPECT_TRUE(holds(html, "<td>50</td><td>1</td>"));
   EXPECT_TRUE(holds(html, "<td>breaks at "));
+}
+
+TEST_F(ReportPageTest, anchors_that_are_not_in_place_are_said_to_be_so_and_hold_nothing) {
+  const io::Scene scene =
+      io::parse_scene(k_shaken + k_straps, "s.toml", {"anchor.weak.on=false", "anchor.strong.on=false"});
+  tell_of(scene);
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "3. Anchors, none of them in place"));
+  EXPECT_TRUE(holds(html, "<td>50</td><td>1</td><td>\u2013</td><td>not in place</td>"));
+  EXPECT_FALSE(holds(html, "The same run with all of them removed"));
+  EXPECT_TRUE(holds(html, "4. How certain this is"));
+  EXPECT_TRUE(holds(html, "No anchor, strap or pole holds the furniture"));
 }
 
 TEST_F(ReportPageTest, what_moved_a_body_is_named_and_not_what_frames_would_have_had) {
