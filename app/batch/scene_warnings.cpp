@@ -115,8 +115,8 @@ double rounded_up(double value) {
   return std::ceil(value / unit) * unit;
 }
 
-/// Greatest part of the acceleration that tips a body on a rigid floor by which it tips earlier here, as far
-/// as its weight on one edge tells, or exactly where it stands freely.
+/// Greatest part of the steady acceleration that tips a body on a rigid floor by which it tips earlier here,
+/// as far as its weight on one edge tells, or exactly where it stands freely.
 std::optional<double> early_tipping(const Model& model, const Parameters& p) {
   std::optional<double> early = early_uplift(model, p.contact, p.gravity);
   if (!early || *early <= k_early) return early;
@@ -147,9 +147,11 @@ std::string soft_contact_warning(const Setup& setup, const Parameters& p) {
   const std::optional<double> rigid = rigid_alpha(model, p.contact, p.gravity);
   if (!early || !rigid || *early <= k_early) return "";
   return fmt::format(
-      "contact.alpha = {:.4g} kgf is soft: a body lifts a side, and may tip, at up to {:.0f} % less "
-      "acceleration than on a rigid floor; {:.0f} kgf keeps that below {:g} %; no alpha at all takes "
-      "{:.0f} kgf, with which it lands as on a rigid floor too",
+      "contact.alpha = {:.4g} kgf is soft: under a steady push a body lifts a side, and may tip, at up to "
+      "{:.0f} % less acceleration than on a rigid floor, in a shake at still less; {:.0f} kgf keeps that of "
+      "a "
+      "steady push below {:g} %; no alpha at all takes {:.0f} kgf, with which it lands as on a rigid floor "
+      "too",
       p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
       rounded_up(alpha_for_tipping(model, p) / k_standard_gravity), 100 * k_hardly,
       rounded_up(*rigid / k_standard_gravity));

@@ -14,8 +14,8 @@ namespace topple::app {
 /// - soft_contact_warning() and bending_warning().
 std::vector<std::string> scene_warnings(const Setup& setup);
 
-/// Of contacts so soft that a side lifts at less than 95 % of the acceleration that lifts it on a rigid
-/// floor; empty: they are stiffer, or nothing moves. `parameters`: of the scene now.
+/// Of contacts so soft that a side lifts at less than 95 % of the steady acceleration that lifts it on a
+/// rigid floor; empty: they are stiffer, or nothing moves. `parameters`: of the scene now.
 std::string soft_contact_warning(const Setup& setup, const Parameters& parameters);
 
 /// Of a room in which many bodies bend more than run.accuracy allows rigid ones to; empty: there are few.
