@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "app/panels/teaching_words.h"
+#include "app/picture/touching_bodies.h"
 #include "solver/body/model_level.h"
+#include "solver/model/excitation.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
 #include "solver/study/overturn/criteria.h"
@@ -75,8 +78,39 @@ std::string held_in_words(const Player& player, int body) {
   return "";
 }
 
+namespace {
+
+constexpr double k_swings = 2;  // periods after which a shake that would have lifted a body has
+
+/// Since when the run that is shown goes on under what it is shaken by now, s; infinite: the floor is still.
+double shaken_since(const Player& player) {
+  const Shake& shake = player.parameters().shakes.front();
+  if (!shake.on) return std::numeric_limits<double>::infinity();
+  double since = shake.start + (traits(shake.kind).has_frequency ? shake.taper / shake.frequency : 0);
+  for (const LoggedEdit& edit : player.edits())
+    if (edit.time <= player.time()) since = std::max(since, edit.time);
+  return since;
+}
+
+/// Edits of the start are what the run began with.
+bool was_changed(const Player& player) {
+  return std::ranges::any_of(player.edits(), [&](const LoggedEdit& edit) {
+    return edit.step > 0 && edit.time < player.time() && !traits(edit.edit.key).setting;
+  });
+}
+
+/// By another body, in a recorded frame up to the instant that is shown.
+bool was_touched(const Player& player, int body) {
+  const Body& own = player.scene().setup.model.bodies[static_cast<std::size_t>(body)];
+  return std::ranges::any_of(player.way(), [&](const RowPtr& row) {
+    return row->time <= player.time() && touches_another(own, *row);
+  });
+}
+
+}  // namespace
+
 std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,
-                                const ShakePlace& shake, bool changed) {
+                                const ShakePlace& shake) {
   const Phrase& said = verdict(limits, shake);
   const auto is_set_here = [&](const LoggedEdit& edit) { return std::abs(edit.time - player.time()) < 1e-9; };
   if (std::ranges::any_of(player.history().edits, is_set_here)) return "";  // no step was taken with it
@@ -86,13 +120,16 @@ std::string difference_in_words(const Player& player, int body, const CriteriaLi
     lifted = lifted || event.event.kind == Event::Kind::uplift;
     overturned = overturned || event.event.kind == Event::Kind::overturn;
   }
+  const std::string& name = player.scene().setup.model.bodies[static_cast<std::size_t>(body)].name;
+  const bool soft = limits.west < limits.rigid;
+  if (soft && &said != &k_stays && !lifted &&
+      player.time() >= shaken_since(player) + k_swings / shake.frequency)
+    return say(k_has_not_lifted, name);
   if (&said == &k_may_overturn || !(overturned || (lifted && &said == &k_stays))) return "";
-  const Model& model = player.scene().setup.model;
-  std::string words = say(k_run_differs, model.bodies[static_cast<std::size_t>(body)].name,
-                          say(overturned ? k_has_overturned : k_has_lifted));
-  if (limits.west < limits.rigid) words += say(k_differs_soft);
-  if (changed) words += say(k_differs_changed);
-  if (model.furniture_total() > 1) words += say(k_differs_others);
+  std::string words = say(k_run_differs, name, say(overturned ? k_has_overturned : k_has_lifted));
+  if (soft) words += say(k_differs_soft);
+  if (was_changed(player)) words += say(k_differs_changed);
+  if (was_touched(player, body)) words += say(k_differs_others);
   return words + say(k_full_stop);
 }
 

@@ -39,8 +39,8 @@ std::string slides_in_words(const Model& model, const Parameters& parameters, in
 std::string held_in_words(const Player& player, int body);
 
 /// Where the run up to the instant that is shown does not agree with the criteria: how, and why that may be.
-/// Empty: it agrees. `changed`: the shake was another one before.
+/// That soft contacts have not let it lift is told after two periods of the shake as it is. Empty: it agrees.
 std::string difference_in_words(const Player& player, int body, const CriteriaLimits& limits,
-                                const ShakePlace& shake, bool changed);
+                                const ShakePlace& shake);
 
 }  // namespace topple::app

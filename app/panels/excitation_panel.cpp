@@ -151,8 +151,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const auto write = [](const std::string& words) { ImGui::TextWrapped("%s", words.c_str()); };
   write(say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal, say(by_criteria)));
   const std::string held = held_in_words(player, *state.body);
-  const std::string words =
-      held.empty() ? difference_in_words(player, *state.body, limits, now, state.path.size() > 1) : held;
+  const std::string words = held.empty() ? difference_in_words(player, *state.body, limits, now) : held;
   if (!words.empty()) write(words);
   write(say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
             100 * now.amplitude / (2 * k_pi * now.frequency)));

@@ -43,8 +43,11 @@ inline constexpr Phrase k_limits{
     "{2:.3g} cm/s.",
     "West の式：{0:.4g} gal を超えると浮き上がる。石山の式：床の速度が {1:.3g} cm/s 未満なら転倒しない（現在 "
     "{2:.3g} cm/s）。"};
-inline constexpr Phrase k_soft_limits{"Both are for the soft contacts of this scene. ",
-                                      "どちらもこのシーンの柔らかい接触での値。"};
+inline constexpr Phrase k_soft_limits{
+    "Both are for a steady push on the soft contacts of this scene: a shake may lift it at less, or not at "
+    "more. ",
+    "どちらもこのシーンの柔らかい接触に一定の力が続く場合の値で、揺れではより小さくても浮き上がり、"
+    "より大きくても浮き上がらないことがある。"};
 inline constexpr Phrase k_west_formula{
     "On a rigid floor West has g b/h = {0:.4g} gal, the centre of gravity b = {1:.0f} mm from the edge, h = "
     "{2:.0f} mm up.",
@@ -63,10 +66,13 @@ inline constexpr Phrase k_has_lifted{"lifted all the same", "それでも浮き�
 inline constexpr Phrase k_has_overturned{"overturned all the same", "それでも転倒した"};
 inline constexpr Phrase k_differs_soft{"; here soft contacts let it sway higher with each swing",
                                        "。ここでは柔らかい接触のため揺れるたびに振れが大きくなります"};
-inline constexpr Phrase k_differs_changed{"; here the shake was changed while it ran",
-                                          "。ここでは途中で加振が変更されました"};
-inline constexpr Phrase k_differs_others{"; here other bodies stand beside it",
-                                         "。ここではほかの家具があります"};
+inline constexpr Phrase k_differs_changed{"; here parameters were changed while it ran",
+                                          "。ここでは途中でパラメーターが変更されました"};
+inline constexpr Phrase k_differs_others{"; here another body touched it",
+                                         "。ここではほかの家具が接触しました"};
+inline constexpr Phrase k_has_not_lifted{
+    "In this run {0} has not lifted so far: on soft contacts a push has to last.",
+    "この計算では {0} はまだ浮き上がっていません。柔らかい接触では力が続かないと浮き上がりません。"};
 inline constexpr Phrase k_full_stop{".", "。"};
 inline constexpr Phrase k_long_period{"long period, small acceleration", "長周期・小さい加速度"};
 inline constexpr Phrase k_short_period{"short period, large acceleration", "短周期・大きい加速度"};

@@ -2,6 +2,7 @@
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <limits>
 #include <set>
 
@@ -92,6 +93,18 @@ void add(BodyTouch& touch, const Vec3& force, const Vec3& place, double& weight)
 }
 
 }  // namespace
+
+bool any_force(const std::vector<float>& of, int first, int count, int stride) {
+  const auto begin = std::min(of.size(), static_cast<std::size_t>(first * stride)),
+             end = std::min(of.size(), static_cast<std::size_t>((first + count) * stride));
+  return std::any_of(of.begin() + static_cast<std::ptrdiff_t>(begin),
+                     of.begin() + static_cast<std::ptrdiff_t>(end), [](float f) { return f != 0; });
+}
+
+bool touches_another(const Body& body, const io::FrameRow& row) {
+  return any_force(row.member_contact, body.first_element, body.element_count, 4) ||
+         any_force(row.panel_contact, body.first_panel, body.panel_count, 5);
+}
 
 std::vector<BodyTouch> touches(const Model& model, const io::FrameRow& row, std::size_t body) {
   const Body& own = model.bodies[body];

@@ -23,4 +23,10 @@ struct BodyTouch {
 /// shared out so.
 std::vector<BodyTouch> touches(const Model& model, const io::FrameRow& row, std::size_t body);
 
+/// Of `count` rows of `stride` numbers from `first` on, as far as a frame has them: one is not zero.
+bool any_force(const std::vector<float>& of, int first, int count, int stride);
+
+/// Another body touches it, or it another.
+bool touches_another(const Body& body, const io::FrameRow& row);
+
 }  // namespace topple::app

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "app/picture/furnish_words.h"
+#include "app/picture/touching_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "solver/math/ranges.h"
@@ -56,17 +57,11 @@ Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, 
 bool is_in_the_air(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t index) {
   const Body& body = model.bodies[index];
   const int planes = static_cast<int>(model.planes.size());
-  const auto any = [](const std::vector<float>& of, int first, int count, int stride) {
-    const auto begin = std::min(of.size(), static_cast<std::size_t>(first * stride)),
-               end = std::min(of.size(), static_cast<std::size_t>((first + count) * stride));
-    return std::any_of(of.begin() + static_cast<std::ptrdiff_t>(begin),
-                       of.begin() + static_cast<std::ptrdiff_t>(end), [](float f) { return f != 0; });
-  };
   const auto is_its = [&](int node) { return model.node_body[node] == static_cast<int>(index); };
   return moves_faster(model, gravity, row, index, k_flies) &&
-         !any(row.contact_force, body.first_contact_point * planes, body.contact_point_count * planes, 3) &&
-         !any(row.member_contact, body.first_element, body.element_count, 4) &&
-         !any(row.panel_contact, body.first_panel, body.panel_count, 5) &&
+         !any_force(row.contact_force, body.first_contact_point * planes, body.contact_point_count * planes,
+                    3) &&
+         !touches_another(body, row) &&
          ranges::none_of(model.supports, [&](const Support& one) { return is_its(one.node); }) &&
          ranges::none_of(model.anchors, [&](const Anchor& one) {
            return one.body == static_cast<int>(index) || one.other.body == static_cast<int>(index);
