@@ -45,13 +45,13 @@ ordered_json intervals(const std::vector<double>& times) {
   return out;
 }
 
-ordered_json models(const BodyOutcome& o, Integrator frames) {
+ordered_json models(const BodyOutcome& o, const Model& model, const Parameters& parameters) {
   ordered_json out = ordered_json::array();
   for (const LevelChange& change : o.level_changes)
     out.push_back({{"from_s", number(change.time)},
                    {"model", traits(change.level).word},
                    {"reason", name(change.reason)},
-                   {"integrator", integrator_of(change.level, frames)},
+                   {"integrator", integrator_of(change.level, model, parameters)},
                    {"error_estimate", traits(change.level).moves_nodes ? ordered_json(nullptr)
                                                                        : number(change.error_estimate)}});
   return out;
@@ -65,16 +65,16 @@ ordered_json not_planar(const Setup& setup, const BodyOutcome& o, int body) {
   return why.empty() ? ordered_json(nullptr) : ordered_json(std::string(why));
 }
 
-ordered_json body(const Setup& setup, Integrator frames, const BodyOutcome& o, const BodyMomentum& momentum,
-                  int index) {
+ordered_json body(const Setup& setup, const Parameters& parameters, const BodyOutcome& o,
+                  const BodyMomentum& momentum, int index) {
   const Body& body = setup.model.bodies[static_cast<std::size_t>(index)];
   const bool slides = std::isfinite(o.critical);  // it stands on a floor, and nothing holds its base
   return {{"name", body.name},
           {"model", traits(o.level.value_or(ModelLevel::frame)).word},
-          {"integrator", is_static(setup)
-                             ? ordered_json(nullptr)
-                             : ordered_json(integrator_of(o.level.value_or(ModelLevel::frame), frames))},
-          {"models", models(o, frames)},
+          {"integrator", is_static(setup) ? ordered_json(nullptr)
+                                          : ordered_json(integrator_of(o.level.value_or(ModelLevel::frame),
+                                                                       setup.model, parameters))},
+          {"models", models(o, setup.model, parameters)},
           {"not_planar", not_planar(setup, o, index)},
           {"friction", number(body.grip * setup.parameters.contact.friction)},
           {"overturned", o.beyond_since.has_value()},
@@ -132,7 +132,8 @@ std::string_view integrator(const Run& run) {
     });
   };
   const bool any = bodies.size() < model.bodies.size() || std::ranges::any_of(bodies, was_frame);
-  return any || bodies.empty() ? traits(frames).word : integrator_of(*bodies.front().level, frames);
+  return any || bodies.empty() ? traits(frames).word
+                               : integrator_of(*bodies.front().level, model, run.parameters());
 }
 
 /// The mean of an adaptive run.
@@ -260,7 +261,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   const Model& model = run.setup().model;
   for (int b = 0; b < model.furniture_total(); ++b)
     out["bodies"].push_back(
-        body(run.setup(), p.integrator, run.outcome().bodies()[b], body_momentum(model, state, b), b));
+        body(run.setup(), p, run.outcome().bodies()[b], body_momentum(model, state, b), b));
   out["anchors"] = anchors(run);
   out["wedges"] = ordered_json::array();
   for (const Wedge& wedge : run.setup().wedges) out["wedges"].push_back(describe_wedge(model, wedge));

@@ -13,6 +13,7 @@
 #include "app/batch/load_steps.h"
 #include "app/batch/summary.h"
 #include "app/batch/ways_summary.h"
+#include "app/support/integrators.h"
 #include "app/support/model_words.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
@@ -83,10 +84,15 @@ std::string own_frictions(const ordered_json& s) {
 // What moved bodies on the levels that they were on.
 std::string integrators(const ordered_json& s) {
   std::set<ModelLevel> levels;
+  bool has_impulses = false;
   for (const auto& b : s["bodies"]) {
     levels.insert(level_called(b["model"].get<std::string>()).kind);
-    for (const auto& change : b["models"])
-      levels.insert(level_called(change["model"].get<std::string>()).kind);
+    for (const auto& change : b["models"]) {
+      const ModelLevel level = level_called(change["model"].get<std::string>()).kind;
+      levels.insert(level);
+      has_impulses = has_impulses || (level == ModelLevel::rigid &&
+                                      change["integrator"] == row_of(k_level_integrators, level).impulses);
+    }
   }
   if (levels.contains(ModelLevel::rigid))
     levels.erase(ModelLevel::elastic);  // which is moved by a part of that
@@ -94,9 +100,9 @@ std::string integrators(const ordered_json& s) {
   for (const ModelLevel level :
        {ModelLevel::frame, ModelLevel::elastic, ModelLevel::rigid, ModelLevel::planar}) {
     if (!levels.contains(level)) continue;
-    const auto* const own = std::ranges::find(model_words::k_moved_by, level, &model_words::MovedBy::kind);
-    const bool of_scene = own == std::end(model_words::k_moved_by);
-    std::string words = of_scene ? s["integrator"].get<std::string>() : std::string(own->words.english);
+    const Phrase* const own = model_words::moved_by(level, has_impulses);
+    const bool of_scene = own == nullptr;
+    std::string words = of_scene ? s["integrator"].get<std::string>() : std::string(own->english);
     if (of_scene && levels.size() > 1) words += " (frames)";
     if (level == ModelLevel::planar) words += " (planar)";
     all.push_back(std::move(words));

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "app/picture/window_words.h"
+#include "app/support/integrators.h"
 #include "solver/body/model_level.h"
 #include "solver/frame/integrator.h"
 
@@ -14,9 +15,10 @@ using namespace window_words;
 namespace {
 
 std::string moved_by(const Player& player, ModelLevel level) {
-  const auto* const own = std::ranges::find(k_moved_by, level, &MovedBy::kind);
-  return own == std::end(k_moved_by) ? say(phrase_of_choice(traits(player.parameters().integrator).word))
-                                     : say(own->words);
+  const Parameters& parameters = player.parameters();
+  const Phrase* const own =
+      model_words::moved_by(level, has_impulses(player.scene().setup.model, parameters));
+  return say(own == nullptr ? phrase_of_choice(traits(parameters.integrator).word) : *own);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "app/report/report_parts.h"
+#include "app/support/integrators.h"
 #include "app/support/model_words.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
@@ -89,9 +90,9 @@ std::string integrators(const ReportPage& page) {
   }
   std::string out;
   for (const ModelLevel level : levels) {
-    const auto* const own = std::ranges::find(model_words::k_moved_by, level, &model_words::MovedBy::kind);
-    const std::string words =
-        own == std::end(model_words::k_moved_by) ? of_frames(page) : page.text(own->words);
+    const Phrase* const own =
+        model_words::moved_by(level, has_impulses(model, page.report().scene->setup.parameters));
+    const std::string words = own == nullptr ? of_frames(page) : page.text(*own);
     out += (out.empty() ? "" : "; ") +
            (levels.size() > 1 ? page.text(words::k_of_models, words, page.text(model_words::phrase_of(level)))
                               : words);

@@ -75,15 +75,23 @@ inline Phrase phrase_of_choice(std::string_view word) {
   return {word, row == std::end(k_choice_words) ? word : row->second};
 }
 
-/// What moves a body on a level without the scene's integrator (integrators.h).
+/// What moves a body on a level without the scene's integrator, and where rigid bodies that meet have
+/// impulses (integrators.h).
 struct MovedBy {
   ModelLevel kind;
-  Phrase words;
+  Phrase words, impulses;
 };
 inline constexpr MovedBy k_moved_by[] = {
-    {ModelLevel::planar, {"Taylor series", "テイラー級数"}},
+    {ModelLevel::planar, {"Taylor series", "テイラー級数"}, {"Taylor series", "テイラー級数"}},
     {ModelLevel::rigid,
-     {"central differences, TR-BDF2 on stiff contacts", "中央差分法、硬い接触では TR-BDF2"}},
-    {ModelLevel::elastic, {"central differences", "中央差分法"}}};
+     {"central differences, TR-BDF2 on stiff contacts", "中央差分法、硬い接触では TR-BDF2"},
+     {"central differences, TR-BDF2 on stiff contacts, impulses where bodies meet",
+      "中央差分法、硬い接触では TR-BDF2、物体どうしの接触では力積"}},
+    {ModelLevel::elastic, {"central differences", "中央差分法"}, {"central differences", "中央差分法"}}};
+/// Null: the scene's integrator does.
+inline const Phrase* moved_by(ModelLevel level, bool has_impulses) {
+  const auto* const own = ranges::find(k_moved_by, level, &MovedBy::kind);
+  return own == std::end(k_moved_by) ? nullptr : has_impulses ? &own->impulses : &own->words;
+}
 
 }  // namespace topple::app::model_words

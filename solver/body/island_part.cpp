@@ -36,9 +36,11 @@ IslandPart::IslandPart(const Model& model, std::vector<ModelBody> bodies,
                        std::vector<SectionForces>& sections)
     : ReducedPart(std::move(bodies), sections),
       model_(model),
-      coupling_(model, indices(bodies_), candidate_pairs, states) {}
+      coupling_(model, indices(bodies_), candidate_pairs, states),
+      rigid_(bodies_, coupling_) {}
 
 void IslandPart::place(const State& state) {
+  rigid_.forget();
   coupling_.ties().remember(state.anchors);
   coupling_.place_held(state);
   for (int b = 0; b < static_cast<int>(bodies_.size()); ++b)
@@ -49,14 +51,20 @@ void IslandPart::place(const State& state) {
 void IslandPart::start_pairs(const State& state) {
   place(state);
   sticks_.load(state, coupling_.pairs());
+  for (MemberPair& pair : coupling_.pairs()) pair.ahead = 0;
   coupling_.start();
 }
 
 // All that touches between members at `state`.
 void IslandPart::find(const StepInputs& now, const State& state) {
+  if (rigid_.knows(now.law, state)) {
+    now_ = &rigid_.contacts();
+    return;
+  }
+  now_ = &found_;
   start_pairs(state);
   find_member_contacts(now.law, coupling_.pairs(), coupling_.position(), coupling_.velocity(),
-                       coupling_.position(), now_);
+                       coupling_.position(), found_);
 }
 
 StepStatus IslandPart::settle(const Parameters& parameters, State& state, PartScratch&) {
@@ -64,8 +72,9 @@ StepStatus IslandPart::settle(const Parameters& parameters, State& state, PartSc
   start_pairs(state);
   const StepStatus status = settle_bodies(bodies_, &coupling_, parameters, state);
   find_member_contacts(law_at_rest(parameters.contact), coupling_.pairs(), coupling_.position(),
-                       coupling_.velocity(), coupling_.position(), now_);
-  sticks_.store(now_.touches, coupling_.pairs(), state);
+                       coupling_.velocity(), coupling_.position(), found_);
+  now_ = &found_;
+  sticks_.store(found_.touches, coupling_.pairs(), state);
   return status;
 }
 
@@ -73,7 +82,7 @@ BodyEnergy IslandPart::balance(const Parameters& parameters, const StepInputs& n
                                const std::vector<char>& marked, State& state) {
   if (!has(marked)) return {};
   find(now, state);
-  const std::vector<BodyVelocity>& loads = coupling_.loads(now_, coupling_.pairs());
+  const std::vector<BodyVelocity>& loads = coupling_.loads(*now_, coupling_.pairs());
   BodyEnergy held;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto& [index, body] = bodies_[b];
@@ -83,7 +92,7 @@ BodyEnergy IslandPart::balance(const Parameters& parameters, const StepInputs& n
     add_load(loads[b], s);
   }
   held.anchor += coupling_.ties().energy();
-  held.contact += stored_energy(now.law, now_, coupling_.pairs());
+  held.contact += stored_energy(now.law, *now_, coupling_.pairs());
   return held;
 }
 
@@ -91,7 +100,7 @@ BodyEnergy IslandPart::energy(const StepInputs& now, const State& state) {
   BodyEnergy held = ReducedPart::energy(now, state);
   find(now, state);
   held.anchor += coupling_.ties().energy();
-  held.contact += stored_energy(now.law, now_, coupling_.pairs());
+  held.contact += stored_energy(now.law, *now_, coupling_.pairs());
   return held;
 }
 
@@ -113,8 +122,6 @@ void IslandPart::begin(const StepSpan& span, const State& next) {
   start_.stick.clear();
   std::vector<double> travel;
   for (const auto& [index, body] : bodies_) {
-    body->remember(next.anchors);
-    body->take(span.start.pulls);
     start_.bodies.push_back(next.bodies[index]);
     travel.push_back(k_likely * likely_travel(model_.bodies[index], next.bodies[index], span.h));
   }
@@ -162,7 +169,8 @@ void IslandPart::advance_once(const StepSpan& span, State& next, PartScratch& sc
     const auto [a, b] = coupling_.bodies_of(pairs[p]);
     if (start_.close[p]) own_pairs[sets.first_of(std::max(a, b))].push_back(static_cast<int>(p));
   }
-  now_.clear();
+  found_.clear();
+  now_ = &found_;
   StepStatus& status = outcome.status;
   for (int b = 0; b < count; ++b) {
     if (which[b].empty()) continue;
@@ -179,7 +187,7 @@ void IslandPart::advance_once(const StepSpan& span, State& next, PartScratch& sc
       status.kind = together.advance(span, std::move(close), next, outcome.exchanged);
       for (MemberTouch touch : together.contacts().touches) {
         touch.pair = own_pairs[b][touch.pair];
-        now_.touches.push_back(touch);
+        found_.touches.push_back(touch);
       }
     }
     if (!status.ok()) {
@@ -211,6 +219,31 @@ bool IslandPart::missed(const State& next) {
 
 void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) {
   const InPhase phase(scratch.frame.profile, Phase::reduced);
+  for (const auto& [index, body] : bodies_) {
+    body->remember(next.anchors);
+    body->take(span.start.pulls);
+  }
+  if (rigid_.takes(span.parameters, span.start.law, span.end.law, next))
+    advance_by_impulses(span, next, outcome);
+  else
+    advance_by_substeps(span, next, scratch, outcome);
+  if (!outcome.status.ok()) return;
+  for (const auto& [index, body] : bodies_) outcome.held += body->energy(span.end.law, next.bodies[index]);
+  outcome.held.anchor += coupling_.ties().energy();
+  outcome.held.contact += stored_energy(span.end.law, *now_, coupling_.pairs());
+}
+
+void IslandPart::advance_by_impulses(const StepSpan& span, State& next, PartOutcome& outcome) {
+  coupling_.ties().remember(next.anchors);
+  for (const auto& [index, body] : bodies_) body->find_contacts(span.start, next.bodies[index], next.stick);
+  outcome.status.kind = rigid_.advance(span, next, sticks_, outcome.exchanged);
+  outcome.status.time = span.end.time;
+  outcome.status.body = bodies_.front().index;
+  now_ = &rigid_.contacts();
+}
+
+void IslandPart::advance_by_substeps(const StepSpan& span, State& next, PartScratch& scratch,
+                                     PartOutcome& outcome) {
   begin(span, next);
   for (;;) {
     outcome = {};
@@ -220,13 +253,13 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
     begin_again(next);
     place(next);
   }
-  sticks_.store(now_.touches, coupling_.pairs(), next);
-  for (const auto& [index, body] : bodies_) outcome.held += body->energy(span.end.law, next.bodies[index]);
-  outcome.held.anchor += coupling_.ties().energy();
-  outcome.held.contact += stored_energy(span.end.law, now_, coupling_.pairs());
+  sticks_.store(found_.touches, coupling_.pairs(), next);
 }
 
 double IslandPart::time_limit(const Parameters& parameters, const State& state) {
+  for (const auto& [index, body] : bodies_) body->remember(state.anchors);
+  if (const ContactLaw now = contact_law(parameters, state.time); rigid_.takes(parameters, now, now, state))
+    return rigid_.time_limit(parameters, state);
   double limit = ReducedPart::time_limit(parameters, state);
   place(state);
   coupling_.start();
@@ -247,7 +280,9 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
   ReducedPart::find_forces(now, state, with_members);
   if (!with_members) return;
   find(now, state);
-  for (const MemberTouch& touch : now_.touches) {
+  const auto bends = [&](const ModelBody& b) { return traits(state.bodies[b.index].level).has_modes; };
+  if (ranges::none_of(bodies_, bends)) return;
+  for (const MemberTouch& touch : now_->touches) {
     const MemberForce force = member_force(touch, coupling_.pairs()[touch.pair]);
     const auto [a, b] = coupling_.bodies_of(coupling_.pairs()[touch.pair]);
     const auto push = [&](int body, int part, double t, double u, const Vec3& by) {
@@ -267,12 +302,12 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
 void IslandPart::list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                              Forces& forces) {
   ReducedPart::list_forces(parameters, now, state, forces);
-  forces.add(now_, coupling_.pairs());
+  forces.add(*now_, coupling_.pairs());
 }
 
 HardestContact IslandPart::hardest_contact(const HardestContact& hardest) {
   HardestContact found = hardest;
-  for (const MemberTouch& touch : now_.touches) {
+  for (const MemberTouch& touch : now_->touches) {
     if (!(touch.out.normal > found.force)) continue;
     const int element = coupling_.pairs()[touch.pair].elements.a, node = model_.elements[element].node[0];
     found = {touch.out.normal, model_.node_body[node], node, element};

@@ -1,4 +1,6 @@
 // Rigid and elastic bodies of which each is near another or tied to it, or near a floor or wall of members.
+// Rigid ones alone are advanced by impulses where the step allows it (rigid_island.h), else those that meet
+// take implicit substeps together (coupled_bodies.h).
 #pragma once
 
 #include <memory>
@@ -7,6 +9,7 @@
 
 #include "solver/body/reduced_part.h"
 #include "solver/reduced/coupled_bodies.h"
+#include "solver/reduced/rigid_island.h"
 #include "solver/state/member_sticks.h"
 
 namespace topple {
@@ -48,6 +51,8 @@ class IslandPart final : public ReducedPart {
   void find(const StepInputs& now, const State& state);
   void begin(const StepSpan& span, const State& next);
   void begin_again(State& next) const;
+  void advance_by_impulses(const StepSpan& span, State& next, PartOutcome& outcome);
+  void advance_by_substeps(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome);
   void advance_once(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome);
   bool missed(const State& next);
   CoupledBodies& coupled(std::vector<int> which);
@@ -57,9 +62,11 @@ class IslandPart final : public ReducedPart {
   const Model& model_;
   MemberCoupling coupling_;
   MemberSticks sticks_;
+  RigidIsland rigid_;
   std::vector<std::unique_ptr<CoupledBodies>> coupled_;  // sets that were advanced together
   Start start_;
-  MemberContacts now_;  // of the newest step or balance
+  MemberContacts found_;                 // of the newest step or balance,
+  const MemberContacts* now_ = &found_;  // or those of rigid_
 };
 
 }  // namespace topple

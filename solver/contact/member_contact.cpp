@@ -167,12 +167,26 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
   for (const MemberBlend& blend : contacts.blends) add_all(blend_tangent(blend));
 }
 
-void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
-  for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
+namespace {
+
+void take_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
   for (MemberTouch& touch : contacts.touches) {
     pairs[touch.pair].stick[touch.place] = touch.input.stick = touch.out.stick;
     if (traits(law).sticks && slips(law, touch)) touch.out = contact_force(weighted(law, touch), touch.input);
   }
+}
+
+}  // namespace
+
+void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
+  for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
+  take_sticks(law, contacts, pairs);
+}
+
+void keep_sticks(const ContactLaw& law, std::span<const int> which, MemberContacts& contacts,
+                 std::span<MemberPair> pairs) {
+  for (const int p : which) pairs[p].stick.fill(Vec3::Zero());
+  take_sticks(law, contacts, pairs);
 }
 
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
@@ -190,27 +204,30 @@ int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pair
                   std::span<const Vec3> start, std::span<const Vec3> end) {
   for (const MemberTouch& touch : at_end.touches)
     if (!(touch.l > 0)) return touch.pair;
-  for (int k = 0; k < static_cast<int>(pairs.size()); ++k) {
-    const MemberPair& pair = pairs[k];
-    const PairVector x0 = gather(pair, start), x1 = gather(pair, end);
-    // no relative motion of two places is greater than one of the ends
-    double most = 0;
-    for (int a = 0; a < 2; ++a)
-      for (int b = 2; b < pair.nodes(); ++b)
-        most = std::max(most, (x1[a] - x0[a] - x1[b] + x0[b]).squaredNorm());
-    if (4 * most <= pair.L * pair.L) continue;
-    const NearestShares before = nearest_shares(pair, x0), after = nearest_shares(pair, x1);
-    for (int i = 0; i < before.count; ++i) {
-      double travel = std::sqrt(most);
-      if (pair.panel != nullptr) {  // there the place is known
-        Vec3 way = Vec3::Zero();
-        for (int n = 0; n < 6; ++n) way += before.at[i].share[n] * (x1[n] - x0[n]);
-        travel = way.norm();
-      }
-      if (travel > pair.L / 2 && std::min(before.at[i].gap, after.at[i].gap) < travel) return k;
-    }
-  }
+  for (int k = 0; k < static_cast<int>(pairs.size()); ++k)
+    if (moved_unseen(pairs[k], start, end)) return k;
   return -1;
+}
+
+bool moved_unseen(const MemberPair& pair, std::span<const Vec3> start, std::span<const Vec3> end) {
+  const PairVector x0 = gather(pair, start), x1 = gather(pair, end);
+  // no relative motion of two places is greater than one of the ends
+  double most = 0;
+  for (int a = 0; a < 2; ++a)
+    for (int b = 2; b < pair.nodes(); ++b)
+      most = std::max(most, (x1[a] - x0[a] - x1[b] + x0[b]).squaredNorm());
+  if (4 * most <= pair.L * pair.L) return false;
+  const NearestShares before = nearest_shares(pair, x0), after = nearest_shares(pair, x1);
+  for (int i = 0; i < before.count; ++i) {
+    double travel = std::sqrt(most);
+    if (pair.panel != nullptr) {  // there the place is known
+      Vec3 way = Vec3::Zero();
+      for (int n = 0; n < 6; ++n) way += before.at[i].share[n] * (x1[n] - x0[n]);
+      travel = way.norm();
+    }
+    if (travel > pair.L / 2 && std::min(before.at[i].gap, after.at[i].gap) < travel) return true;
+  }
+  return false;
 }
 
 }  // namespace topple

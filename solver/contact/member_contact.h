@@ -48,6 +48,7 @@ struct MemberPair {
   PairVector start;                ///< m, positions of the nodes where the step began: they tell the side
   std::array<Vec3, 5> stick;       ///< m, per place, where the step began
   double gap = 0;                  ///< m, between the surfaces at `start`, where it is known; 0: not
+  double ahead = 0;                ///< m, by which it may be open to be found (MemberContacts::ahead)
 
   int nodes() const { return panel != nullptr ? 6 : 4; }
 };
@@ -86,10 +87,12 @@ struct MemberBlend {
 struct MemberContacts {
   std::vector<MemberTouch> touches;
   std::vector<MemberBlend> blends;
+  std::vector<MemberTouch> ahead;  ///< open by no more than MemberPair::ahead, without forces
 
   void clear() {
     touches.clear();
     blends.clear();
+    ahead.clear();
   }
 };
 
@@ -115,9 +118,13 @@ double nearest_gap(const MemberPair& pair, const PairVector& x);
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found);
+/// The same of some of the pairs, in ascending order.
+void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
+                          std::span<const int> which, std::span<const Vec3> position,
+                          std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found);
 
-/// The part of it that touches panels, added to `found`.
-void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs,
+/// What touches the panel of pair number `index`, added to `found`.
+void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, int index,
                         std::span<const Vec3> position, std::span<const Vec3> velocity,
                         std::span<const Vec3> start, MemberContacts& found);
 
@@ -149,6 +156,9 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
 /// What touches leaves its stick springs in `pairs`; those of other places become zero. Springs that slipped
 /// are shorter from here on, and forces those of the shorter ones.
 void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs);
+/// The same where only the pairs `which` have springs.
+void keep_sticks(const ContactLaw& law, std::span<const int> which, MemberContacts& contacts,
+                 std::span<MemberPair> pairs);
 
 /// Energy in normal springs (of laws that store it) and stick springs, J.
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,
@@ -161,9 +171,18 @@ inline PairVector gather(const MemberPair& pair, std::span<const Vec3> x) {
   return out;
 }
 
+/// Whether a pair whose parts have come nearer than at its start by no more than the root of `approach2`,
+/// m^2, is open by more than its MemberPair::ahead.
+inline bool is_beyond(const MemberPair& pair, double approach2) {
+  const double way = pair.gap - pair.ahead;
+  return way > 0 && approach2 < way * way;
+}
+
 /// First pair that went through each other, or moved by more than L/2 relative to each other within reach:
 /// the step from `start` to `end` (positions) is too long to see what happened between. -1: none.
 int passed_unseen(const MemberContacts& at_end, std::span<const MemberPair> pairs,
                   std::span<const Vec3> start, std::span<const Vec3> end);
+/// The second of it, of one pair.
+bool moved_unseen(const MemberPair& pair, std::span<const Vec3> start, std::span<const Vec3> end);
 
 }  // namespace topple

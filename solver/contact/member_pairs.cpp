@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
 
 #include "solver/math/ranges.h"
 
@@ -35,12 +34,20 @@ std::vector<MemberPair> member_pairs(const Model& model, std::span<const Element
         segment_of(model, pair.a, rules.by_elements(of_a, of_b)),
         on_panel ? Segment{pair.b, 1, {}} : segment_of(model, pair.b, rules.by_elements(of_b, of_a))};
   };
-  std::map<ElementPair, std::array<Segment, 2>> segments;
+  struct Segments {
+    ElementPair elements;
+    std::array<Segment, 2> both;
+  };
+  std::vector<Segments> segments;
   for (const ElementPair& candidate : candidates) {
     const std::array<Segment, 2> both = segments_of(candidate);
-    segments.emplace(ElementPair{both[0].element, both[1].element}, both);
+    segments.push_back({{both[0].element, both[1].element}, both});
   }
+  ranges::sort(segments, {}, &Segments::elements);
+  const auto same = [](const Segments& a, const Segments& b) { return a.elements == b.elements; };
+  segments.erase(std::unique(segments.begin(), segments.end(), same), segments.end());
   std::vector<MemberPair> pairs;
+  pairs.reserve(segments.size());
   for (const auto& [elements, both] : segments) {
     MemberPair& pair = pairs.emplace_back();
     pair.elements = elements;

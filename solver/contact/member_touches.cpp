@@ -53,15 +53,15 @@ class TouchFinder {
         start_(start),
         found_(found) {}
 
-  void find() {
-    for (int i = 0; i < static_cast<int>(pairs_.size()); ++i) {
-      const MemberPair& pair = pairs_[i];
-      if (pair.panel != nullptr) continue;
-      const double approach2 = greatest_approach2(pair);
-      if (pair.gap > 0 && approach2 < pair.gap * pair.gap) continue;
-      pairs_ahead_.push_back({i, 0, 0, 0, 0, approach2});
-      if (pairs_ahead_.full()) look();
-    }
+  void look_at(int i) {
+    const MemberPair& pair = pairs_[i];
+    const double approach2 = greatest_approach2(pair);
+    if (is_beyond(pair, approach2)) return;
+    pairs_ahead_.push_back({i, 0, 0, 0, 0, approach2});
+    if (pairs_ahead_.full()) look();
+  }
+  /// After the last one.
+  void end() {
     look();
     touch();
     complete_blends();
@@ -90,6 +90,8 @@ class TouchFinder {
     unsigned lanes() const { return (1u << count) - 1; }
   };
 
+  double reach_of(const Place& place) const { return pairs_[place.pair].L + pairs_[place.pair].ahead; }
+
   // Bound of the square by which they have come nearer since MemberPair::start, m^2.
   double greatest_approach2(const MemberPair& pair) const {
     const auto moved = [&](int k) { return (position_[pair.node[k]] - pair.start[k]).squaredNorm(); };
@@ -114,8 +116,8 @@ class TouchFinder {
     const Points u = gather(x, n[1]) - a0, v = gather(x, n[3]) - b0, r = a0 - b0;
     const auto [s, t] = nearest_places(u, v, r);
     const Points between = r + s * u - t * v;
-    const Four L = ahead.each([&](const Place& of) { return pairs_[of.pair].L; });
-    const unsigned near = bits(dot(between, between) < L * L) & ahead.lanes();
+    const Four reach = ahead.each([&](const Place& of) { return reach_of(of); });
+    const unsigned near = bits(dot(between, between) < reach * reach) & ahead.lanes();
     if (near != 0) {
       const Points across = cross(u, v);
       const Four sine = dot(across, across) / (dot(u, u) * dot(v, v) * Four(k_parallel));
@@ -168,12 +170,14 @@ class TouchFinder {
     s = choose(end_of_b, within_segment(dot(t * v - r, u) / dot(u, u)), s);
     const Points between = r + s * u - t * v;
     const Four L = places.each([&](const Place& of) { return pairs_[of.pair].L; });
-    const Four square = dot(between, between);
-    const unsigned touching = bits(square < L * L) & places.lanes();
-    if (touching != 0) {
+    const Four square = dot(between, between),
+               reach = places.each([&](const Place&of) { return reach_of(of); });
+    const unsigned near = bits(square < reach * reach) & places.lanes(),
+                   touching = bits(square < L * L) & near;
+    if (near != 0) {
       Four l = sqrt(square);
       Points normal = Four(1) / l * between;
-      tell_sides(places, touching, between, l, normal);
+      tell_sides(places, near, between, l, normal);
       const std::array<Four, 4> share{1 - s, s, t - 1, -t};
       const auto by_share = [&](auto at) {
         return share[0] * at(0) + share[1] * at(1) + share[2] * at(2) + share[3] * at(3);
@@ -182,17 +186,17 @@ class TouchFinder {
       const Points now[4] = {a0, a1, b0, b1};
       const Points travel = by_share([&](int k) { return now[k] - gather(x0, n[k]); });
       const Points speed = by_share([&](int k) { return gather(v0, n[k]); });
-      add_touches(touching, s, t, share, l, normal, L, speed, travel);
+      add_touches(near, touching, s, t, share, l, normal, L, speed, travel);
     }
     places.count = 0;
   }
 
   // Ends that have come no nearer than the distance have not passed each other; the sides of the others are
   // those of the start.
-  void tell_sides(const FourPlaces& places, unsigned touching, const Points& between, Four& l,
+  void tell_sides(const FourPlaces& places, unsigned near, const Points& between, Four& l,
                   Points& normal) const {
     for (int k = 0; k < places.count; ++k) {
-      if (!(touching >> k & 1) || l[k] * l[k] > places.at[k].approach2) continue;
+      if (!(near >> k & 1) || l[k] * l[k] > places.at[k].approach2) continue;
       const Vec3 now = lane(between, k),
                  before = between_at(places.at[k].place, pairs_[places.at[k].pair].start);
       const double distance = now.norm();
@@ -201,7 +205,7 @@ class TouchFinder {
     }
   }
 
-  void add_touches(unsigned touching, Four s, Four t, const std::array<Four, 4>& share, Four l,
+  void add_touches(unsigned near, unsigned touching, Four s, Four t, const std::array<Four, 4>& share, Four l,
                    const Points& normal, Four L, const Points& speed, Points stick) {
     const FourPlaces& places = places_;
     const std::size_t first = found_.touches.size();
@@ -214,9 +218,9 @@ class TouchFinder {
     stick = before + stick;
     const auto normals = lanes(normal), speeds = lanes(speed), sticks = lanes(stick);
     for (int k = 0; k < places.count; ++k) {
-      if (!(touching >> k & 1)) continue;
+      if (!(near >> k & 1)) continue;
       const Place& at = places.at[k];
-      MemberTouch& touch = found_.touches.emplace_back();
+      MemberTouch& touch = (touching >> k & 1 ? found_.touches : found_.ahead).emplace_back();
       touch.pair = at.pair;
       touch.place = at.place;
       for (int end = 0; end < 4; ++end) touch.share[end] = share[end][k];
@@ -236,7 +240,7 @@ class TouchFinder {
       in.between_members = true;
       if (!in_packs_) touch.out = contact_force(weighted(law_, touch), in);
     }
-    if (in_packs_) respond(touching, first, depth, L, normal, speed, stick);
+    if (in_packs_ && touching != 0) respond(touching, first, depth, L, normal, speed, stick);
   }
 
   // contact_force of the coulomb law.
@@ -296,14 +300,37 @@ class TouchFinder {
   FourPlaces pairs_ahead_, places_;
 };
 
+// Of the pairs index(0), index(1), ...
+template <class Index>
+void find_contacts_of(std::size_t count, Index index, const ContactLaw& law,
+                      std::span<const MemberPair> pairs, std::span<const Vec3> position,
+                      std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found) {
+  found.clear();
+  TouchFinder finder(law, pairs, position, velocity, start, found);
+  const int end = static_cast<int>(count);
+  for (int k = 0; k < end; ++k)
+    if (pairs[index(k)].panel == nullptr) finder.look_at(index(k));
+  finder.end();
+  for (int k = 0; k < end; ++k)
+    if (pairs[index(k)].panel != nullptr)
+      find_panel_touches(law, pairs, index(k), position, velocity, start, found);
+}
+
 }  // namespace
 
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found) {
-  found.clear();
-  TouchFinder(law, pairs, position, velocity, start, found).find();
-  find_panel_touches(law, pairs, position, velocity, start, found);
+  const auto all = [](int k) { return k; };
+  find_contacts_of(pairs.size(), all, law, pairs, position, velocity, start, found);
+}
+
+void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
+                          std::span<const int> which, std::span<const Vec3> position,
+                          std::span<const Vec3> velocity, std::span<const Vec3> start,
+                          MemberContacts& found) {
+  find_contacts_of(
+      which.size(), [&](int k) { return which[k]; }, law, pairs, position, velocity, start, found);
 }
 
 }  // namespace topple

@@ -44,52 +44,53 @@ MemberBlend blend_of(const ContactLaw& law, const MemberTouch& touch, const Memb
 
 }  // namespace
 
-void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs,
+void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, int index,
                         std::span<const Vec3> position, std::span<const Vec3> velocity,
                         std::span<const Vec3> start, MemberContacts& found) {
-  for (int i = 0; i < static_cast<int>(pairs.size()); ++i) {
-    const MemberPair& pair = pairs[i];
-    if (pair.panel == nullptr) continue;
-    const PairVector x = gather(pair, position);
-    double moved = 0;
-    for (int k = 2; k < 6; ++k) moved = std::max(moved, (x[k] - pair.start[k]).squaredNorm());
-    for (int end = 0; end < 2; ++end) {
-      if (!pair.tip[end]) continue;
-      const double approach2 = 2 * (moved + (x[end] - pair.start[end]).squaredNorm());
-      if (pair.gap > 0 && approach2 < pair.gap * pair.gap) continue;
-      const PanelPlace at = panel_place(x[end], corners(x));
-      const double square = at.between.squaredNorm();
-      if (!(square < pair.L * pair.L) || !at.within()) continue;
-      const PanelShare share = panel_share(*pair.panel, at, k_reach * pair.L);
-      if (!(share.share > 0)) continue;
-      MemberTouch touch;
-      touch.pair = i;
-      touch.place = 1 + end;
-      touch.share[end] = 1;
-      for (int k = 0; k < 4; ++k) touch.share[2 + k] = -at.share[k];
-      touch.weight = law.member_share * share.share;
-      touch.s = end;
-      touch.t = at.r[0];
-      touch.u = at.r[1];
-      touch.s_free = touch.t_free = false;
-      ContactInput& in = touch.input;
-      in.normal = at.normal();
-      touch.l = at.between.dot(in.normal);
-      // a tip that has come no nearer than its distance has not passed the sheet
-      const double side = square > approach2 ? std::copysign(1., touch.l) : side_at_start(pair, end);
-      in.normal *= side;
-      touch.l *= side;
-      in.depth = 1 - touch.l / pair.L;
-      in.L = pair.L;
-      in.velocity = relative(touch, pair, velocity);
-      in.stick = pair.stick[touch.place] + relative(touch, pair, position) - relative(touch, pair, start);
-      in.mass = pair.mass;
-      in.between_members = true;
-      touch.out = contact_force(weighted(law, touch), in);
-      found.touches.push_back(touch);
-      if (share.share < 1 && traits(law).stores_energy)
-        found.blends.push_back(blend_of(law, touch, pair, at, share));
+  const MemberPair& pair = pairs[index];
+  const PairVector x = gather(pair, position);
+  double moved = 0;
+  for (int k = 2; k < 6; ++k) moved = std::max(moved, (x[k] - pair.start[k]).squaredNorm());
+  for (int end = 0; end < 2; ++end) {
+    if (!pair.tip[end]) continue;
+    const double approach2 = 2 * (moved + (x[end] - pair.start[end]).squaredNorm());
+    if (is_beyond(pair, approach2)) continue;
+    const PanelPlace at = panel_place(x[end], corners(x));
+    const double square = at.between.squaredNorm(), reach = pair.L + pair.ahead;
+    if (!(square < reach * reach) || !at.within()) continue;
+    const PanelShare share = panel_share(*pair.panel, at, k_reach * pair.L);
+    if (!(share.share > 0)) continue;
+    MemberTouch touch;
+    touch.pair = index;
+    touch.place = 1 + end;
+    touch.share[end] = 1;
+    for (int k = 0; k < 4; ++k) touch.share[2 + k] = -at.share[k];
+    touch.weight = law.member_share * share.share;
+    touch.s = end;
+    touch.t = at.r[0];
+    touch.u = at.r[1];
+    touch.s_free = touch.t_free = false;
+    ContactInput& in = touch.input;
+    in.normal = at.normal();
+    touch.l = at.between.dot(in.normal);
+    // a tip that has come no nearer than its distance has not passed the sheet
+    const double side = square > approach2 ? std::copysign(1., touch.l) : side_at_start(pair, end);
+    in.normal *= side;
+    touch.l *= side;
+    in.depth = 1 - touch.l / pair.L;
+    in.L = pair.L;
+    in.velocity = relative(touch, pair, velocity);
+    in.stick = pair.stick[touch.place] + relative(touch, pair, position) - relative(touch, pair, start);
+    in.mass = pair.mass;
+    in.between_members = true;
+    touch.out = contact_force(weighted(law, touch), in);
+    if (!(square < pair.L * pair.L)) {
+      found.ahead.push_back(touch);
+      continue;
     }
+    found.touches.push_back(touch);
+    if (share.share < 1 && traits(law).stores_energy)
+      found.blends.push_back(blend_of(law, touch, pair, at, share));
   }
 }
 

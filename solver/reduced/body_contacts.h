@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "solver/contact/contact_law.h"
+#include "solver/math/lanes.h"
 #include "solver/math/upwards.h"
 #include "solver/model/model.h"
 #include "solver/reduced/body_unknowns.h"
@@ -39,6 +40,16 @@ enum class ContactSums { none, loads, all };
 /// N m s.
 struct ContactSlope {
   PackMat3 force_linear, force_angular, moment_linear, moment_angular;
+};
+
+/// A place of a body that touches a plane or another body, or may within a step. Floor's axes.
+struct NearContact {
+  Vec3 normal;                            ///< unit, towards the body, the first of two
+  std::array<Vec3, 2> arm;                ///< m, from the centres of gravity of the bodies
+  Vec3 stick;                             ///< m, ContactInput::stick
+  double depth, L;                        ///< 1 - l/L, negative while open; m
+  double alpha;                           ///< N
+  double stick_stiffness, stick_damping;  ///< N/m, N s/m
 };
 
 /// The contact points of one body against all planes.
@@ -105,6 +116,32 @@ class BodyContacts {
   void give_up_substep() { std::swap(now_, start_); }
   /// What touches at the pose of `s`, with rotation matrix `r` and stick springs of State::stick.
   void find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick);
+  /// Calls f(NearContact) for points that touch a plane at the pose of `s` or are open by no more than
+  /// `ahead`, m; arguments as those of find. Of a rigid body.
+  template <class F>
+  void each_near(const PreparedLaw& law, const BodyState& s, const PackMat3& r, std::span<const Vec3> stick,
+                 double ahead, F f) const {
+    for (std::size_t k = 0; k < widest_.size(); ++k) {
+      const Plane& plane = model_.planes[k];
+      const double height = plane.normal.dot(s.position - plane.point);
+      const Vec3 n = unpacked(transposed_times(r, packed(plane.normal)));
+      if (clearance(n, height) > widest_[k] + ahead) continue;
+      for (std::size_t g = 0; g < groups_.size(); ++g) {
+        const Side& side = sides_[k * groups_.size() + g];
+        const Four gap = dot(in_all_lanes(n), groups_[g].place) + (Four(height) - side.gap);
+        for_lanes(gap < Four(ahead), [&](int i) {
+          f(NearContact{plane.normal,
+                        {unpacked(r * packed(lane(groups_[g].place, i))), Vec3::Zero()},
+                        stick[side.spring[i]],
+                        -gap[i] / side.L[i],
+                        side.L[i],
+                        law.alpha,
+                        law.alpha * side.stick[i],
+                        law.root_alpha * side.damping[i]});
+        });
+      }
+    }
+  }
   /// The springs follow the motion from `before`, with rotation matrix `r0`, to what find was given.
   void follow(const BodyState& before, const PackMat3& r0, const BodyState& s, const PackMat3& r);
   /// Forces of what touches at velocity u. with_slope: also d(force)/d(velocity) + gamma_dt
@@ -173,6 +210,7 @@ class BodyContacts {
   double least_length() const { return least_length_; }  ///< m, least L
   /// kg, the share of the body that a contact carries.
   double share_of_mass() const { return contact_mass_; }
+  double grip() const { return grip_; }  ///< Body::grip
 
  private:
   // Those that fill up the last group never touch.

@@ -32,6 +32,7 @@ MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
       modes_(bodies_.size(), 0),
       loads_(bodies_.size()),
       acceleration_(bodies_.size()) {
+  number_.assign(model.node_total(), -1);
   const auto is_own = [this](int body) { return ranges::find(bodies_, body) != bodies_.end(); };
   pairs_ = member_pairs(model, candidate_pairs,
                         {.by_elements = [&](int body, int) { return traits(states[body].level).has_modes; },
@@ -46,11 +47,11 @@ MemberCoupling::MemberCoupling(const Model& model, std::vector<int> bodies,
 }
 
 int MemberCoupling::number_of(int node) {
-  const auto known = ranges::find(nodes_, node, &Node::node);
-  if (known != nodes_.end()) return static_cast<int>(known - nodes_.begin());
+  int& number = number_[node];
+  if (number >= 0) return number;
   const int index = model_.node_body[node];
   const auto own = ranges::find(bodies_, index);
-  const int number = static_cast<int>(nodes_.size());
+  number = static_cast<int>(nodes_.size());
   if (own == bodies_.end()) {
     nodes_.push_back({-1, node, Vec3::Zero()});
   } else {
@@ -106,6 +107,15 @@ void MemberCoupling::start() {
       pair.start[k] = x;
     }
     if (!known) gaps.add(pair);
+  }
+}
+
+void MemberCoupling::start(std::span<const int> which) {
+  GapFinder gaps;
+  for (const int p : which) {
+    MemberPair& pair = pairs_[p];
+    for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = position_[pair.node[k]];
+    gaps.add(pair);
   }
 }
 
@@ -207,6 +217,13 @@ double MemberCoupling::next_touch(std::span<const MemberPair> pairs, double with
     }
   }
   return soonest < within ? soonest : std::numeric_limits<double>::infinity();
+}
+
+Vec3 MemberCoupling::arm(const MemberTouch& touch, const MemberPair& pair, int side) const {
+  Vec3 arm = Vec3::Zero();
+  for (int k = side == 0 ? 0 : 2; k < (side == 0 ? 2 : pair.nodes()); ++k)
+    arm += touch.share[k] * arm_[pair.node[k]];
+  return side == 0 ? arm : Vec3(-arm);
 }
 
 const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& contacts,

@@ -50,6 +50,7 @@ class MemberCoupling {
 
   /// pairs() start where the nodes are; their gaps there are known from here on.
   void start();
+  void start(std::span<const int> which);  ///< some of them
   /// The same for copies of pairs that moved little since they started; gaps of some millimetres are lower
   /// bounds.
   void go_on(std::span<MemberPair> pairs) const;
@@ -61,6 +62,8 @@ class MemberCoupling {
   const std::vector<Vec3>& position() const { return position_; }  ///< m, per node as placed
   const std::vector<Vec3>& velocity() const { return velocity_; }  ///< m/s
   int modes(int body) const { return modes_[body]; }               ///< as placed
+  /// m, from its body's centre of gravity, of the point of a touch on part `side` of its pair, 0 or 1.
+  Vec3 arm(const MemberTouch& touch, const MemberPair& pair, int side) const;
 
   /// Time until the next open one of `pairs` closes, s, as the bodies were placed by their states, where the
   /// pairs start; infinite: not within `within`.
@@ -93,6 +96,7 @@ class MemberCoupling {
   const Model& model_;
   const std::vector<int> bodies_;
   std::vector<Node> nodes_;
+  std::vector<int> number_;                 // per node of the model, within this; -1: none
   std::vector<std::vector<int>> nodes_of_;  // per body
   std::vector<MemberPair> pairs_;
   BodyTies ties_;

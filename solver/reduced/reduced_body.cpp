@@ -47,6 +47,7 @@ ReducedBody::ReducedBody(const Model& model, int body)
       body_(body),
       mass_(model.bodies[body].mass),
       reach_(model.bodies[body].reach),
+      least_inertia_(Eigen::SelfAdjointEigenSolver<Mat3>(model.bodies[body].inertia).eigenvalues()[0]),
       inertia_(packed(model.bodies[body].inertia)),
       inverse_inertia_(packed(Mat3(model.bodies[body].inertia.inverse()))),
       basis_(model.bodies[body].elastic),
@@ -391,6 +392,28 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
     }
   }
   return implicit ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
+}
+
+void ReducedBody::move_from_impulse(const PackVec3& linear, const PackVec3& angular, double h,
+                                    const PreparedLaw& law, BodyState& s, std::span<const Vec3> stick) {
+  const BodyState before = s;
+  const PackMat3 r0 = rotation_matrix(packed(s.rotation));
+  contacts_.begin_substep();
+  s.velocity = unpacked(linear);
+  s.angular_velocity = unpacked(transposed_times(r0, angular));
+  drift(h, s);
+  const PackMat3 r = rotation_matrix(packed(s.rotation));
+  contacts_.find(s, r, stick);
+  contacts_.follow(before, r0, s, r);
+  respond_at<ContactSums::none>(law, s);
+}
+
+void ReducedBody::finish_impulse(const PreparedLaw& law, const Vec3& field, BodyState& s,
+                                 std::span<Vec3> stick) {
+  contacts_.keep_sticks(law, stick);
+  const ContactLoads loads = respond_at<ContactSums::loads>(law, s);
+  s.force = mass_ * field + unpacked(loads.force);
+  s.moment = unpacked(loads.moment);
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {

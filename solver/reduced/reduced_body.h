@@ -84,7 +84,23 @@ class ReducedBody {
   double next_landing(const BodyState& s, double within) const;
   double first_substep(const ContactLaw& law) const;
   BodyContacts& contacts() { return contacts_; }
-  double mass() const { return mass_; }  ///< kg
+  const BodyContacts& contacts() const { return contacts_; }
+  double mass() const { return mass_; }                 ///< kg
+  double reach() const { return reach_; }               ///< m
+  const PackMat3& inertia() const { return inertia_; }  ///< kg m^2, material axes
+  const PackMat3& inverse_inertia() const { return inverse_inertia_; }
+  double least_inertia() const { return least_inertia_; }  ///< kg m^2, about any axis
+  PackMat3 inertia_at(const PackMat3& r) const { return r * inertia_ * transposed(r); }  ///< floor's axes
+  /// Neither an anchor nor a pull holds it.
+  bool is_free() const { return !anchors_.any(); }
+
+  /// A substep of a rigid body from the velocities, floor's axes, that contacts leave it (ContactImpulses):
+  /// where `s` is after h, s, its contacts there with the springs `stick`. Then finish_impulse, or
+  /// BodyContacts::give_up_substep with `s` as it was.
+  void move_from_impulse(const PackVec3& linear, const PackVec3& angular, double h, const PreparedLaw& law,
+                         BodyState& s, std::span<const Vec3> stick);
+  /// What contacts and `field`, m/s^2, do to it there.
+  void finish_impulse(const PreparedLaw& law, const Vec3& field, BodyState& s, std::span<Vec3> stick);
 
   /// Index into the model of the node of a contact point.
   int node_of(int point) const { return model_.contact_points[point].node; }
@@ -128,7 +144,6 @@ class ReducedBody {
   };
 
   int modes(const BodyState& s) const { return s.level == ModelLevel::elastic ? basis_->modes : 0; }
-  PackMat3 inertia_at(const PackMat3& r) const { return r * inertia_ * transposed(r); }
   Vec3 angular_acceleration(const BodyState& s) const;
   template <ContactSums sums>
   ContactLoads respond_at(const PreparedLaw& law, const BodyState& s);
@@ -165,7 +180,7 @@ class ReducedBody {
 
   const Model& model_;
   const int body_;
-  const double mass_, reach_;
+  const double mass_, reach_, least_inertia_;
   const PackMat3 inertia_, inverse_inertia_;  // material axes
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;

@@ -193,9 +193,10 @@ void Outcome::list_points(const Model& model, const Body& body, int side) {
 }
 
 void Outcome::carry(const Model& model, int part, double t, double u, const Vec3& force) {
+  if (!(force.z() > 0)) return;
   const int b = body_of(model, part);
   const Body& body = model.bodies[b];
-  if (body.support_polygon.empty() || !(force.z() > 0)) return;
+  if (body.support_polygon.empty()) return;
   const double base = body.support_polygon.front().z(), slack = 1e-6 + 1e-6 * body.reach;
   Vec3 x = Vec3::Zero();
   each_share(model, part, t, u, [&](int node, double share) { x += share * model.node_position[node]; });

@@ -9,15 +9,23 @@
 namespace topple {
 namespace {
 
-// Those of `pairs` become those in `sticks`.
+bool in_order(const MemberStick& a, const MemberStick& b) {
+  return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
+}
+
+// Those of `pairs` become those in `sticks`. All are in order.
 void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& sticks,
              std::vector<MemberStick>& all) {
+  auto pair = pairs.begin();
   const auto own = [&](const MemberStick& stick) {
-    return ranges::binary_search(pairs, stick.elements, {}, &MemberPair::elements);
+    while (pair != pairs.end() && pair->elements < stick.elements) ++pair;
+    return pair != pairs.end() && pair->elements == stick.elements;
   };
   std::erase_if(all, own);
+  pair = pairs.begin();
+  const auto kept = static_cast<std::ptrdiff_t>(all.size());
   ranges::copy_if(sticks, std::back_inserter(all), own);
-  ranges::sort(all, {}, [](const MemberStick& stick) { return std::tie(stick.elements, stick.place); });
+  if (kept > 0) std::inplace_merge(all.begin(), all.begin() + kept, all.end(), in_order);
 }
 
 }  // namespace
@@ -38,6 +46,10 @@ void MemberSticks::store(std::span<const MemberTouch> touches, std::span<const M
   new_.clear();
   for (const MemberTouch& touch : touches)
     new_.push_back({pairs[touch.pair].elements, touch.place, touch.out.stick});
+  // those of members come in order, then those of panels
+  const auto panels = std::is_sorted_until(new_.begin(), new_.end(), in_order);
+  std::sort(panels, new_.end(), in_order);
+  std::inplace_merge(new_.begin(), panels, new_.end(), in_order);
   replace(pairs, new_, keeps_ ? own_ : state.member_sticks);
 }
 

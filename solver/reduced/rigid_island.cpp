@@ -1,0 +1,450 @@
+#include "solver/reduced/rigid_island.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <utility>
+
+#include "solver/math/disjoint_sets.h"
+#include "solver/math/ranges.h"
+#include "solver/state/step_limits.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_least_tolerance = 1e-3;  // below it TR-BDF2 is cheaper
+constexpr double k_step = 6.3;              // over the tolerance, of sqrt(reach/g)
+constexpr double k_most_growth = 3;         // of that step, for bodies at rest
+constexpr double k_slow = 0.003;            // of sqrt(g reach), speed below which steps grow
+constexpr double k_bounce_speed =
+    0.02;                         // of sqrt(g reach), along the normal: what strikes slower need not bounce
+constexpr double k_bounce = 0.5;  // rad in a step, of a bounce that is resolved: a bound of it
+constexpr double k_likely = 1.5;  // times the way that the motion at the start says: may be more
+constexpr double k_more_way = 2e-4;  // m
+constexpr double k_stale = 5e-4;     // m, by which bodies come nearer until a gap is found anew
+constexpr double k_most_gap = 0.1;   // m, of pairs, about
+constexpr double k_deep = 0.5;       // depth from which a centre line may have passed the other
+constexpr std::size_t k_sets = 32;   // whose matrices are kept
+
+PackMat3 turned(const BodyState& s) {
+  return rotation_matrix(packed(s.rotation));
+}
+double speed_of(const ReducedBody& body, const BodyState& s) {
+  return s.velocity.norm() + body.reach() * s.angular_velocity.norm();
+}
+// Of a fall through the reach, m/s, about.
+double fall_speed(const Parameters& parameters, const ReducedBody& body) {
+  return std::sqrt(std::max(parameters.gravity.norm(), 0.01 * k_standard_gravity) * body.reach());
+}
+// Step of a body that moves, s.
+double step_of(const Parameters& parameters, const ReducedBody& body) {
+  return k_step * parameters.tolerance * body.reach() / fall_speed(parameters, body);
+}
+
+}  // namespace
+
+RigidIsland::RigidIsland(const std::vector<ModelBody>& bodies, MemberCoupling& coupling)
+    : bodies_(bodies), coupling_(coupling), buffers_(bodies.size()), place_(bodies.size()) {
+  for (const MemberPair& pair : coupling.pairs()) {
+    const auto [a, b] = coupling.bodies_of(pair);
+    const int first = std::max(a, b), second = std::min(a, b);
+    const auto same = [first, second](const Two& two) { return two.first == first && two.second == second; };
+    auto two = ranges::find_if(twos_, same);
+    if (two == twos_.end()) {
+      twos_.push_back({first, second, {}, 0, 0, 0, 0, 0, {}});
+      two = twos_.end() - 1;
+    }
+    two->pairs.push_back(static_cast<int>(two_of_.size()));
+    two_of_.push_back(static_cast<int>(two - twos_.begin()));
+  }
+  open_until_.assign(two_of_.size(), 0);
+  seen_.assign(two_of_.size(), 0);
+}
+
+bool takes_impulses(const Parameters& parameters) {
+  return parameters.adaptive && parameters.tolerance >= k_least_tolerance &&
+         traits(parameters.contact).sticks;
+}
+
+bool RigidIsland::takes(const Parameters& parameters, const ContactLaw& before, const ContactLaw& after,
+                        const State& state) const {
+  return takes_impulses(parameters) && before == after && traits(after).sticks &&
+         ranges::all_of(bodies_, [&](const ModelBody& b) {
+           return state.bodies[b.index].level == ModelLevel::rigid && b.body->is_free();
+         });
+}
+
+double RigidIsland::time_limit(const Parameters& parameters, const State& state) const {
+  double limit = k_longest_step;
+  for (const auto& [index, body] : bodies_) {
+    const BodyState& s = state.bodies[index];
+    const double step = step_of(parameters, *body);
+    limit = std::min(limit, s.substep > 0 ? std::min(s.substep, k_most_growth * step) : step);
+    if (const double turning = s.angular_velocity.norm(); turning * limit > k_turn) limit = k_turn / turning;
+  }
+  return limit;
+}
+
+// Bound of the way by which members of two bodies come nearer within h, m, as they move at the start. What
+// acts on them is not asked: it is known only when this is.
+double RigidIsland::coming(const Two& two, const State& state, double h) const {
+  const auto& [last, of_last] = bodies_[two.second < 0 ? two.first : two.second];
+  const Vec3 at = state.bodies[last].position;
+  Vec3 speed = Vec3::Zero(), spin = Vec3::Zero();  // of the first to the second
+  for (const int b : {two.first, two.second}) {
+    if (b < 0) continue;
+    const BodyState& s = state.bodies[bodies_[b].index];
+    const double sign = b == two.first ? 1 : -1;
+    const Vec3 own = s.rotation * s.angular_velocity;
+    speed += sign * (s.velocity + own.cross(at - s.position));
+    spin += sign * own;
+  }
+  return k_more_way + k_likely * h * (speed.norm() + (of_last->reach() + k_most_gap) * spin.norm());
+}
+
+// The same of the way from here_.
+double RigidIsland::came(const Two& two, const std::vector<Known>& there) const {
+  const int last = two.second < 0 ? two.first : two.second;
+  const Vec3 at = here_[last].position;
+  Vec3 shift = Vec3::Zero();
+  Mat3 turn = Mat3::Zero();
+  for (const int b : {two.first, two.second}) {
+    Mat3 own = Mat3::Identity();
+    Vec3 way = Vec3::Zero();
+    if (b >= 0) {
+      own = (there[b].rotation * here_[b].rotation.conjugate()).toRotationMatrix();
+      way = there[b].position + own * (at - here_[b].position) - at;
+    }
+    shift = way - shift;
+    turn = own - turn;
+  }
+  return shift.norm() + (bodies_[last].body->reach() + k_most_gap) * turn.norm();
+}
+
+void RigidIsland::go_to(const State& state) {
+  std::vector<Known> there;
+  for (int b = 0; b < static_cast<int>(bodies_.size()); ++b) {
+    const BodyState& s = state.bodies[bodies_[b].index];
+    there.push_back(known_of(s));
+    coupling_.place(b, s);
+  }
+  if (here_.empty())
+    for (const Two& two : twos_) take_gaps(two.pairs);
+  else
+    for (Two& two : twos_) two.closed += two.way = came(two, there);
+  here_ = std::move(there);
+}
+
+bool RigidIsland::knows(const ContactLaw& law, const State& state) const {
+  if (!law_ || !(*law_ == law)) return false;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (!(here_[b] == known_of(state.bodies[bodies_[b].index]))) return false;
+  return true;
+}
+
+void RigidIsland::find(const ContactLaw& law, const State& state, const MemberSticks& sticks, double h) {
+  if (h == h_ && knows(law, state)) return;
+  coupling_.place_held(state);
+  go_to(state);
+  sticks.load(state, coupling_.pairs());
+  look(law, state, h, 0);
+}
+
+void RigidIsland::take_gaps(std::span<const int> which) {
+  coupling_.start(which);
+  for (const int p : which) {
+    seen_[p] = twos_[two_of_[p]].closed;
+    open_until_[p] = seen_[p] + coupling_.pairs()[p].gap;
+  }
+}
+
+// What touches, or may within h, s, as bodies may come nearer by `more`, m, than is likely.
+void RigidIsland::look(const ContactLaw& law, const State& state, double h, double more) {
+  law_ = law;
+  h_ = h;
+  const std::span<MemberPair> pairs = coupling_.pairs();
+  const std::vector<Vec3>& position = coupling_.position();
+  which_.clear();
+  for (Two& two : twos_) {
+    two.near.clear();
+    two.ahead = more + coming(two, state, h);
+    two.least_unseen = two.least;
+    if (two.least > two.closed + two.ahead) continue;
+    two.least_unseen = std::numeric_limits<double>::infinity();
+    for (const int p : two.pairs) {
+      if (open_until_[p] > two.closed + two.ahead) {
+        two.least_unseen = std::min(two.least_unseen, open_until_[p]);
+        continue;
+      }
+      MemberPair& pair = pairs[p];
+      pair.ahead = two.ahead;
+      pair.gap = 0;
+      for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = position[pair.node[k]];
+      which_.push_back(p);
+    }
+  }
+  ranges::sort(which_);
+  find_member_contacts(law, pairs, which_, position, coupling_.velocity(), position, now_);
+  found_.assign(pairs.size(), false);
+  for (const auto* list : {&now_.touches, &now_.ahead})
+    for (const MemberTouch& touch : *list) {
+      twos_[two_of_[touch.pair]].near.push_back(&touch);
+      found_[touch.pair] = true;
+    }
+  stale_.clear();
+  for (const int p : which_) {
+    const Two& two = twos_[two_of_[p]];
+    if (found_[p])
+      open_until_[p] = seen_[p] = two.closed;
+    else if (two.closed > seen_[p] + k_stale)
+      stale_.push_back(p);
+  }
+  take_gaps(stale_);
+  for (Two& two : twos_) two.least = two.least_unseen;
+  for (const int p : which_) {
+    double& least = twos_[two_of_[p]].least;
+    least = std::min(least, open_until_[p]);
+  }
+}
+
+RigidIsland::Together& RigidIsland::together(const std::vector<int>& bodies) {
+  const auto known = ranges::find_if(sets_, [&](const auto& set) { return set->bodies == bodies; });
+  if (known != sets_.end()) return **known;
+  if (sets_.size() >= k_sets) sets_.erase(sets_.begin());
+  std::vector<std::pair<int, int>> coupled;
+  for (const Two& two : twos_)
+    if (two.second >= 0 && ranges::binary_search(bodies, two.first) &&
+        ranges::binary_search(bodies, two.second))
+      coupled.emplace_back(place_[two.first], place_[two.second]);
+  return *sets_.emplace_back(std::make_unique<Together>(
+      Together{bodies, BlockLu(static_cast<int>(bodies.size()), coupled), {}, {}}));
+}
+
+// With their contacts with planes.
+void RigidIsland::add_bodies(const StepSpan& span, const State& state, Together& set) {
+  const double h = span.h;
+  const Vec3 field = span.parameters.gravity - span.start.floor;
+  for (const int b : set.bodies) {
+    const auto& [index, body] = bodies_[b];
+    const BodyState& s = state.bodies[index];
+    const PackMat3 r = turned(s);
+    const PackVec3 linear = packed(s.velocity), angular = r * packed(s.angular_velocity),
+                   turning = r * (body->inverse_inertia() * transposed_times(r, packed(s.moment)));
+    set.impulses.add({body->mass(), body->least_inertia(), body->reach(), body->inertia_at(r), linear,
+                      angular, packed(Vec3(body->mass() * field))},
+                     {mul_add(h / body->mass(), packed(s.force), linear), mul_add(h, turning, angular)});
+  }
+  for (int k = 0; k < static_cast<int>(set.bodies.size()); ++k) {
+    const ReducedBody& body = *bodies_[set.bodies[k]].body;
+    const BodyState& s = state.bodies[bodies_[set.bodies[k]].index];
+    const double way = k_more_way + k_likely * h * (speed_of(body, s) + h / 2 * s.force.norm() / body.mass());
+    const auto add = [&](const NearContact& contact) {
+      set.impulses.add(k, -1, body.contacts().grip(), false, contact);
+    };
+    body.contacts().each_near(span.end.law, s, turned(s), state.stick, way, add);
+  }
+}
+
+void RigidIsland::add_contacts(const PreparedLaw& law, const Two& two, Together& set) {
+  for (const MemberTouch* touch : two.near) {
+    const MemberPair& pair = coupling_.pairs()[touch->pair];
+    const ContactInput& in = touch->input;
+    const double alpha = touch->weight * law.alpha;
+    const auto [k, c] = StickSpring(alpha, in.L, in.mass);
+    // the pair's first part may be of either body
+    const bool same = coupling_.bodies_of(pair)[0] == two.first;
+    const double sign = same ? 1 : -1;
+    const NearContact contact{
+        sign * in.normal,
+        {coupling_.arm(*touch, pair, same ? 0 : 1), coupling_.arm(*touch, pair, same ? 1 : 0)},
+        sign * in.stick,
+        in.depth,
+        in.L,
+        alpha,
+        k,
+        c};
+    set.contacts.emplace_back(
+        touch,
+        set.impulses.add(place_[two.first], two.second < 0 ? -1 : place_[two.second], 1, true, contact));
+  }
+}
+
+// The velocities at the end, of one set after the other.
+bool RigidIsland::solve(const StepSpan& span, const State& state) {
+  const PreparedLaw& law = span.end.law;
+  const int count = static_cast<int>(bodies_.size());
+  DisjointSets joined(count);
+  for (const Two& two : twos_)
+    if (!two.near.empty() && two.second >= 0) joined.join(two.first, two.second);
+  std::vector<std::vector<int>> sets(count);
+  for (int b = 0; b < count; ++b) {
+    std::vector<int>& own = sets[joined.first_of(b)];
+    place_[b] = static_cast<int>(own.size());
+    own.push_back(b);
+  }
+  std::vector<Together*> set_of(count);
+  velocity_.resize(count);
+  work_ = {};
+  used_.clear();
+  for (const std::vector<int>& bodies : sets) {
+    if (bodies.empty()) continue;
+    Together& set = together(bodies);
+    used_.push_back(&set);
+    set.contacts.clear();
+    set.impulses.begin(law, span.h);
+    add_bodies(span, state, set);
+    for (const int b : bodies) set_of[b] = &set;
+  }
+  for (const Two& two : twos_)
+    if (!two.near.empty()) add_contacts(law, two, *set_of[two.first]);
+  double fall = std::numeric_limits<double>::infinity();
+  for (const ModelBody& b : bodies_) fall = std::min(fall, fall_speed(span.parameters, *b.body));
+  bounces_ = false;
+  for (Together* set : used_) {
+    if (law.restitution > 0 && set->impulses.strikes(k_bounce_speed * fall)) {
+      bounces_ = true;
+      if (span.h * set->impulses.frequency() > k_bounce) return false;
+    }
+    if (!set->impulses.solve(set->matrix)) return false;
+    const ContactImpulses::Work work = set->impulses.finish();
+    work_.normal += work.normal;
+    work_.friction += work.friction;
+    for (std::size_t k = 0; k < set->bodies.size(); ++k)
+      velocity_[set->bodies[k]] = set->impulses.velocities()[k];
+  }
+  return true;
+}
+
+void RigidIsland::move(const StepSpan& span, State& next) {
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto& [index, body] = bodies_[b];
+    body->move_from_impulse(velocity_[b].linear, velocity_[b].angular, span.h, span.end.law,
+                            next.bodies[index], next.stick);
+  }
+  go_to(next);
+}
+
+// By how much more than was looked at bodies came nearer, where something may have met unseen, m.
+double RigidIsland::missed() const {
+  double most = 0;
+  for (const Two& two : twos_) most = std::max(most, two.closed - two.least_unseen);
+  return most;
+}
+
+// Whether a pair went through each other.
+bool RigidIsland::passed() const {
+  for (const int p : which_) {
+    const MemberPair& pair = coupling_.pairs()[p];
+    if (twos_[two_of_[p]].way > pair.L / 2 && moved_unseen(pair, start_, coupling_.position())) return true;
+  }
+  for (const MemberTouch& touch : now_.touches) {
+    if (touch.input.depth < k_deep) continue;
+    for (const auto* list : {&before_.touches, &before_.ahead})
+      for (const MemberTouch& was : *list)
+        if (was.pair == touch.pair && was.place == touch.place &&
+            was.input.normal.dot(touch.input.normal) < 0)
+          return true;
+  }
+  return false;
+}
+
+// The stick springs that the step leaves.
+void RigidIsland::take_sticks() {
+  const std::span<MemberPair> pairs = coupling_.pairs();
+  for (const int p : which_) pairs[p].stick.fill(Vec3::Zero());
+  for (const Together* set : used_)
+    for (const auto& [touch, number] : set->contacts) {
+      const bool same = coupling_.bodies_of(pairs[touch->pair])[0] == twos_[two_of_[touch->pair]].first;
+      pairs[touch->pair].stick[touch->place] = (same ? 1 : -1) * set->impulses.stick(number);
+    }
+}
+
+// J, in springs of contacts; in stick springs between members.
+double RigidIsland::held(const ContactLaw& law) const {
+  double held = stored_energy(law, now_, coupling_.pairs());
+  for (const ModelBody& b : bodies_) held += b.body->contacts().energy(law);
+  return held;
+}
+double RigidIsland::held_by_sticks() const {
+  double held = 0;
+  for (const MemberTouch& touch : now_.touches) held += touch.out.stick_energy;
+  return held;
+}
+
+void RigidIsland::book(const StepSpan& span, const State& next, double held_before, double sticks_before,
+                       StepEnergy& booked) const {
+  const Vec3& floor = span.start.floor;
+  double in_sticks = held_by_sticks() - sticks_before;
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto& [index, body] = bodies_[b];
+    const BodyState &s = next.bodies[index], &s0 = start_of_[b];
+    const Vec3 shift = s.position - s0.position, gain = s.velocity - s0.velocity;
+    const PackVec3 &angular = velocity_[b].angular, omega = packed(s.angular_velocity);
+    in_sticks += body->contacts().stick_energy_gained();
+    booked.gravity -= body->mass() * span.parameters.gravity.dot(shift);
+    booked.input -= body->mass() * floor.dot(shift);
+    // they move at the velocity of the end, and turn with their angular momentum
+    booked.numerical +=
+        span.h * body->mass() / 2 * (span.parameters.gravity - floor).dot(gain) +
+        0.5 * (dot(angular, body->inertia_at(turned(s0)) * angular) - dot(omega, body->inertia() * omega));
+  }
+  booked.friction += work_.friction - in_sticks;
+  booked.normal_damping += work_.normal - (held(span.end.law) - held_before - in_sticks);
+}
+
+// s, that is tried next at `state`.
+double RigidIsland::next_step(const Parameters& parameters, double h, const State& state) const {
+  double limit = bounces_ ? h : k_most_growth * h;
+  for (const auto& [index, body] : bodies_) {
+    const double slow = k_slow * fall_speed(parameters, *body), speed = speed_of(*body, state.bodies[index]);
+    limit = std::min(limit, step_of(parameters, *body) *
+                                (speed * k_most_growth > slow ? std::max(1., slow / speed) : k_most_growth));
+  }
+  return limit;
+}
+
+StepStatus::Kind RigidIsland::advance(const StepSpan& span, State& next, MemberSticks& sticks,
+                                      StepEnergy& booked) {
+  const PreparedLaw& law = span.end.law;
+  std::deque<BodyContacts::ScratchLease> leases;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    leases.emplace_back(bodies_[b].body->contacts(), buffers_[b]);
+  // what is looked at follows from the state: a run that goes on from one has the same bits
+  find(law, next, sticks, std::max(span.h, time_limit(span.parameters, next)));
+  const double held_before = held(law), sticks_before = held_by_sticks();
+  start_of_.clear();
+  for (const ModelBody& b : bodies_) start_of_.push_back(next.bodies[b.index]);
+  start_ = coupling_.position();
+  forget();  // until it has succeeded
+  if (!solve(span, next)) return StepStatus::Kind::newton_diverged;
+  move(span, next);
+  if (missed() > 0) return StepStatus::Kind::passed_through;
+  take_sticks();
+  std::swap(before_, now_);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto& [index, body] = bodies_[b];
+    body->finish_impulse(law, span.parameters.gravity - span.end.floor, next.bodies[index], next.stick);
+  }
+  const double wanted = next_step(span.parameters, span.h, next);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    here_[b].substep = next.bodies[bodies_[b].index].substep = wanted;
+  look(law, next, time_limit(span.parameters, next), 0);
+  if (passed()) {
+    forget();
+    return StepStatus::Kind::passed_through;
+  }
+  book(span, next, held_before, sticks_before, booked);
+  // what is open at the end holds none
+  for (MemberTouch& touch : now_.touches) touch.out.stick = touch.input.stick;
+  for (MemberTouch& touch : now_.ahead) {
+    touch.input.stick.setZero();
+    coupling_.pairs()[touch.pair].stick[touch.place].setZero();
+  }
+  sticks.store(now_.touches, coupling_.pairs(), next);
+  const std::vector<BodyVelocity>& loads = coupling_.loads(now_, coupling_.pairs());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) add_load(loads[b], next.bodies[bodies_[b].index]);
+  return StepStatus::Kind::ok;
+}
+
+}  // namespace topple

@@ -1,0 +1,127 @@
+// Rigid bodies that touch each other, or may within a step, advanced by impulses (contact_impulses.h): a step
+// looks once who touches whom, finds the velocities that all contacts leave, and lets the bodies move freely
+// with them,
+//   x1 = x0 + h u1,  R with its angular momentum kept (Lie midpoint),
+// which is the symplectic Euler method while no contact opens, closes or slips: an error of first order, by
+// which velocities are half a step late. So steps are short: h = 6.3 tolerance sqrt(reach/g), up to three
+// times that where nothing moves. With restitution the bounce of what strikes is resolved.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "solver/frame/step_span.h"
+#include "solver/math/block_lu.h"
+#include "solver/reduced/contact_impulses.h"
+#include "solver/reduced/member_coupling.h"
+#include "solver/reduced/reduced_body.h"
+#include "solver/state/member_sticks.h"
+
+namespace topple {
+
+/// Whether rigid bodies that meet are moved so where nothing holds them: steps follow a tolerance of 1e-3 or
+/// more, below which substeps (coupled_bodies.h) are cheaper, and contacts stick by springs.
+bool takes_impulses(const Parameters& parameters);
+
+/// All bodies of a MemberCoupling, on the level rigid.
+class RigidIsland {
+ public:
+  /// They outlive this.
+  RigidIsland(const std::vector<ModelBody>& bodies, MemberCoupling& coupling);
+
+  /// Whether a step from one law to the other may be taken so: takes_impulses, and no edit of contacts,
+  /// anchor or pull acts in it.
+  bool takes(const Parameters& parameters, const ContactLaw& before, const ContactLaw& after,
+             const State& state) const;
+  /// Longest step from `state`, s.
+  double time_limit(const Parameters& parameters, const State& state) const;
+  /// Takes the step; the contacts of the bodies with planes have been found. newton_diverged, passed_through:
+  /// it is too long, and `next` is undefined.
+  StepStatus::Kind advance(const StepSpan& span, State& next, MemberSticks& sticks, StepEnergy& booked);
+
+  /// What touches between members after the newest step, and whether that is at `state`.
+  const MemberContacts& contacts() const { return now_; }
+  bool knows(const ContactLaw& law, const State& state) const;
+  /// The coupling was used otherwise.
+  void forget() { law_.reset(); }
+
+ private:
+  // Two bodies whose members may touch; `second` -1: floors and walls of members.
+  struct Two {
+    int first, second;
+    std::vector<int> pairs;
+    // Bounds of the way by which they have come nearer, m: so far, and in the newest step.
+    double closed = 0, way = 0;
+    // Of `closed`, m: before these no pair touches, and none of those that were not looked at.
+    double least = 0, least_unseen = 0;
+    double ahead = 0;                      // m, by which they may come nearer in the step
+    std::vector<const MemberTouch*> near;  // what touches, or may
+  };
+  // Bodies that touch each other, and what is kept for them from step to step.
+  struct Together {
+    std::vector<int> bodies;
+    BlockLu matrix;
+    ContactImpulses impulses;
+    std::vector<std::pair<const MemberTouch*, int>> contacts;  // and their numbers in `impulses`
+  };
+  // For what a body's contacts are known.
+  struct Known {
+    Vec3 position, velocity, angular_velocity;
+    Quat rotation;
+    double substep;
+    bool operator==(const Known&) const = default;
+  };
+
+  static Known known_of(const BodyState& s) {
+    return {s.position, s.velocity, s.angular_velocity, s.rotation, s.substep};
+  }
+  double coming(const Two& two, const State& state, double h) const;
+  double came(const Two& two, const std::vector<Known>& there) const;
+  void go_to(const State& state);
+  void find(const ContactLaw& law, const State& state, const MemberSticks& sticks, double h);
+  void look(const ContactLaw& law, const State& state, double h, double more);
+  void take_gaps(std::span<const int> which);
+  Together& together(const std::vector<int>& bodies);
+  bool solve(const StepSpan& span, const State& state);
+  void add_bodies(const StepSpan& span, const State& state, Together& set);
+  void add_contacts(const PreparedLaw& law, const Two& two, Together& set);
+  void move(const StepSpan& span, State& next);
+  double missed() const;
+  bool passed() const;
+  void take_sticks();
+  double held(const ContactLaw& law) const;
+  double held_by_sticks() const;
+  void book(const StepSpan& span, const State& next, double held_before, double sticks_before,
+            StepEnergy& booked) const;
+  double next_step(const Parameters& parameters, double h, const State& state) const;
+
+  const std::vector<ModelBody>& bodies_;
+  MemberCoupling& coupling_;
+  std::vector<Two> twos_;
+  std::vector<int> two_of_;         // per pair
+  std::vector<double> open_until_;  // m, per pair: it is open while Two::closed is less
+  std::vector<double> seen_;        // m, per pair: Two::closed when that was found
+  std::vector<std::unique_ptr<Together>> sets_;
+  std::vector<std::vector<BodyContacts::TouchBuffer>> buffers_;  // per body
+  // What is known, where and with what.
+  std::vector<Known> here_;  // per body
+  std::optional<ContactLaw> law_;
+  double h_ = 0;  // s, step within which what now_ lists may touch
+  MemberContacts now_;
+  std::vector<int> which_;  // pairs looked at
+  // Of a step.
+  MemberContacts before_;
+  std::vector<Vec3> start_;  // m, per node of the coupling
+  std::vector<BodyState> start_of_;
+  std::vector<Together*> used_;
+  std::vector<ContactImpulses::Velocity> velocity_;  // per body
+  ContactImpulses::Work work_;
+  bool bounces_ = false;     // something struck, with restitution
+  std::vector<int> place_;   // per body, within its set
+  std::vector<int> stale_;   // pairs whose gaps are to be found anew
+  std::vector<char> found_;  // per pair: now_ lists it
+};
+
+}  // namespace topple
