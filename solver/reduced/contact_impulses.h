@@ -4,8 +4,8 @@
 //   theta = w^2/(16 + w^2),  w = h frequency()
 // n, J, d, s: normal, map to the relative velocity, depth and stick spring of contact c at the start; F: what
 // else acts; f: the coulomb law. What is stiff for the step is implicit: none is too stiff, and what lands
-// loses its speed as the restitution 0 says (Moreau 1988; Anitescu and Potra 1997). What is soft swings
-// undamped: theta goes to 0.
+// has lost its speed at the end (Moreau 1988; Anitescu and Potra 1997). What is soft swings undamped: theta
+// goes to 0.
 #pragma once
 
 #include <array>

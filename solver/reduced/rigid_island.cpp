@@ -18,9 +18,9 @@ constexpr double k_step = 6.3;              // over the tolerance, of sqrt(reach
 constexpr double k_most_growth = 3;         // of that step, for bodies at rest
 constexpr double k_slow = 0.003;            // of sqrt(g reach), speed below which steps grow
 constexpr double k_bounce_speed =
-    0.02;                         // of sqrt(g reach), along the normal: what strikes slower need not bounce
-constexpr double k_bounce = 0.5;  // rad in a step, of a bounce that is resolved: a bound of it
-constexpr double k_likely = 1.5;  // times the way that the motion at the start says: may be more
+    0.05;                            // of sqrt(g reach), along the normal: what strikes faster is resolved
+constexpr double k_bounce = 0.5;     // rad in a step, of a bounce that is resolved: a bound of it
+constexpr double k_likely = 1.5;     // times the way that the motion at the start says: may be more
 constexpr double k_more_way = 2e-4;  // m
 constexpr double k_stale = 5e-4;     // m, by which bodies come nearer until a gap is found anew
 constexpr double k_most_gap = 0.1;   // m, of pairs, about
@@ -302,7 +302,7 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
   for (const ModelBody& b : bodies_) fall = std::min(fall, fall_speed(span.parameters, *b.body));
   bounces_ = false;
   for (Together* set : used_) {
-    if (law.restitution > 0 && set->impulses.strikes(k_bounce_speed * fall)) {
+    if (set->impulses.strikes(k_bounce_speed * fall)) {
       bounces_ = true;
       if (span.h * set->impulses.frequency() > k_bounce) return false;
     }

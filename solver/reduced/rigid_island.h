@@ -4,7 +4,8 @@
 //   x1 = x0 + h u1,  R with its angular momentum kept (Lie midpoint),
 // which is the symplectic Euler method while no contact opens, closes or slips: an error of first order, by
 // which velocities are half a step late. So steps are short: h = 6.3 tolerance sqrt(reach/g), up to three
-// times that where nothing moves. With restitution the bounce of what strikes is resolved.
+// times that where nothing moves; and blows are resolved, of which even restitution 0 leaves a tenth (eps of
+// the coulomb law).
 #pragma once
 
 #include <memory>
@@ -118,7 +119,7 @@ class RigidIsland {
   std::vector<Together*> used_;
   std::vector<ContactImpulses::Velocity> velocity_;  // per body
   ContactImpulses::Work work_;
-  bool bounces_ = false;     // something struck, with restitution
+  bool bounces_ = false;     // something struck
   std::vector<int> place_;   // per body, within its set
   std::vector<int> stale_;   // pairs whose gaps are to be found anew
   std::vector<char> found_;  // per pair: now_ lists it
