@@ -116,11 +116,11 @@ class BodyContacts {
   void give_up_substep() { std::swap(now_, start_); }
   /// What touches at the pose of `s`, with rotation matrix `r` and stick springs of State::stick.
   void find(const BodyState& s, const PackMat3& r, std::span<const Vec3> stick);
-  /// Calls f(NearContact) for points that touch a plane at the pose of `s` or are open by no more than
-  /// `ahead`, m; arguments as those of find. Of a rigid body.
+  /// Calls f(NearContact) for points that touch a plane at the pose of `s`, with rotation matrix r, or are
+  /// open by no more than `ahead`, m; `stick`: springs at the pose `before`, with r0. Of a rigid body.
   template <class F>
-  void each_near(const PreparedLaw& law, const BodyState& s, const PackMat3& r, std::span<const Vec3> stick,
-                 double ahead, F f) const {
+  void each_near(const PreparedLaw& law, const BodyState& before, const PackMat3& r0, const BodyState& s,
+                 const PackMat3& r, std::span<const Vec3> stick, double ahead, F f) const {
     for (std::size_t k = 0; k < widest_.size(); ++k) {
       const Plane& plane = model_.planes[k];
       const double height = plane.normal.dot(s.position - plane.point);
@@ -130,9 +130,11 @@ class BodyContacts {
         const Side& side = sides_[k * groups_.size() + g];
         const Four gap = dot(in_all_lanes(n), groups_[g].place) + (Four(height) - side.gap);
         for_lanes(gap < Four(ahead), [&](int i) {
+          const PackVec3 place = packed(lane(groups_[g].place, i));
+          const Vec3 travel = s.position - before.position + unpacked((r - r0) * place);
           f(NearContact{plane.normal,
-                        {unpacked(r * packed(lane(groups_[g].place, i))), Vec3::Zero()},
-                        stick[side.spring[i]],
+                        {unpacked(r * place), Vec3::Zero()},
+                        stick[side.spring[i]] + travel,
                         -gap[i] / side.L[i],
                         side.L[i],
                         law.alpha,

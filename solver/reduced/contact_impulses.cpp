@@ -174,7 +174,7 @@ template <ContactImpulses::Sums sums>
   for (FourContacts* at = &contacts_[of.first]; at != end; ++at) {
     const Points &n = at->normal, v = motion.at(*at);
     const Springs springs(of, *at, dot(n, v), ahead_, sums == Sums::slopes);
-    const auto f = coulomb_force(law, law.loss, weakens, n, v, mul_add(Four(h_), v, at->stick),
+    const auto f = coulomb_force(law, law.loss, weakens, n, v, mul_add(Four(h_ / 2), v, at->stick),
                                  springs.touching, springs.p, at->k, at->c);
     const Points along = -f.scale * f.trial, push = mul_add(f.normal, n, along);
     force = force + push;
@@ -182,7 +182,7 @@ template <ContactImpulses::Sums sums>
     if constexpr (sums == Sums::slopes) {
       const Four by_normal = normal_slope(law, law.loss, springs.p, f.inverse) -
                              Four(ahead_) * springs.stiffness * f.factor,
-                 across = mul_add(Four(h_), at->k, at->c) * f.scale;
+                 across = mul_add(Four(h_ / 2), at->k, at->c) * f.scale;
       PackMatrix<Four> slope = diagonal(Points{across, across, across}) - outer((by_normal + across) * n, n);
       if (f.slips)
         slope = slope -
@@ -254,7 +254,7 @@ bool ContactImpulses::strikes(double speed) const {
     const Motion motion(of, bodies_);
     for (int k = 0; k < (of.count + 3) / 4; ++k) {
       const FourContacts& at = contacts_[of.first + k];
-      const Four vn = dot(at.normal, motion.at(at)), reached = at.depth - Four(h_) * vn / at.L;
+      const Four vn = dot(at.normal, motion.at(at)), reached = at.depth - Four(h_ / 2) * vn / at.L;
       if (bits((Four(speed) < magnitude(vn)) & ((Four(0) < at.depth) | (Four(0) < reached))) != 0)
         return true;
     }
@@ -271,7 +271,7 @@ double ContactImpulses::frequency() const {
 bool ContactImpulses::solve(BlockLu& matrix) {
   left_.resize(6 * bodies_.size());
   const double turn = h_ * frequency() / k_resolved;
-  ahead_ = h_ * turn * turn / (1 + turn * turn);
+  ahead_ = h_ / 2 * turn * turn / (1 + turn * turn);
   holds_limits_ = false;
   double last = 0;  // correction, m/s
   evaluate<Sums::slopes>(&matrix);

@@ -1,11 +1,11 @@
-// Velocities that rigid bodies have after a step in which contacts stay where they are at its start and only
-// open, close and slide as the velocities at its end say:
-//   M (u - u0) = h (F + sum_c J_c^T f_c(d_c - theta h n.J_c u/L, J_c u, s_c + h J_c u))
+// Velocities that rigid bodies have after a step in whose middle its contacts are looked at. Where they are
+// and point to stays; they open, close and slide as the velocities at its end say:
+//   M (u - u0) = h (F + sum_c J_c^T f_c(d_c - theta h/2 n.J_c u/L, J_c u, s_c + h/2 J_c u))
 //   theta = w^2/(16 + w^2),  w = h frequency()
-// n, J, d, s: normal, map to the relative velocity, depth and stick spring of contact c at the start; F: what
-// else acts; f: the coulomb law. What is stiff for the step is implicit: none is too stiff, and what lands
-// has lost its speed at the end (Moreau 1988; Anitescu and Potra 1997). What is soft swings undamped: theta
-// goes to 0.
+// n, J, d, s: normal, map to the relative velocity, depth and stick spring of contact c in the middle; F:
+// what else acts; f: the coulomb law. Where contacts are stiff for the step, forces are those of its end:
+// none is too stiff, and what rests on them stays (Moreau 1988; Anitescu and Potra 1997). Where they are soft
+// theta goes to 0, and the method to that of Stormer and Verlet, which is of second order and damps nothing.
 #pragma once
 
 #include <array>
@@ -83,7 +83,7 @@ class ContactImpulses {
   void search(double before, double after);
 
   const PreparedLaw* law_ = nullptr;
-  double h_ = 0, ahead_ = 0;  // s; share of h_ at whose end normal springs are
+  double h_ = 0, ahead_ = 0;  // s; and after the middle, when normal springs are
   std::vector<RigidBody> bodies_;
   std::vector<Velocity> u_;
   std::vector<FourContacts> contacts_;

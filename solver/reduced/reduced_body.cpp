@@ -394,17 +394,12 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
   return implicit ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
 }
 
-void ReducedBody::move_from_impulse(const PackVec3& linear, const PackVec3& angular, double h,
-                                    const PreparedLaw& law, BodyState& s, std::span<const Vec3> stick) {
-  const BodyState before = s;
-  const PackMat3 r0 = rotation_matrix(packed(s.rotation));
-  contacts_.begin_substep();
-  s.velocity = unpacked(linear);
-  s.angular_velocity = unpacked(transposed_times(r0, angular));
-  drift(h, s);
+void ReducedBody::find_contacts_after(const BodyState& before, const PreparedLaw& law, const BodyState& s,
+                                      std::span<const Vec3> stick) {
   const PackMat3 r = rotation_matrix(packed(s.rotation));
+  contacts_.begin_substep();
   contacts_.find(s, r, stick);
-  contacts_.follow(before, r0, s, r);
+  contacts_.follow(before, rotation_matrix(packed(before.rotation)), s, r);
   respond_at<ContactSums::none>(law, s);
 }
 

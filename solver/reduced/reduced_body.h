@@ -94,12 +94,12 @@ class ReducedBody {
   /// Neither an anchor nor a pull holds it.
   bool is_free() const { return !anchors_.any(); }
 
-  /// A substep of a rigid body from the velocities, floor's axes, that contacts leave it (ContactImpulses):
-  /// where `s` is after h, s, its contacts there with the springs `stick`. Then finish_impulse, or
-  /// BodyContacts::give_up_substep with `s` as it was.
-  void move_from_impulse(const PackVec3& linear, const PackVec3& angular, double h, const PreparedLaw& law,
-                         BodyState& s, std::span<const Vec3> stick);
-  /// What contacts and `field`, m/s^2, do to it there.
+  /// A rigid body moves freely for h, s.
+  void move_freely(double h, BodyState& s) const { drift(h, s); }
+  /// At the end `s` of a step from `before` its contacts, with springs that were `stick`, are found; then
+  /// what they and `field`, m/s^2, do to it.
+  void find_contacts_after(const BodyState& before, const PreparedLaw& law, const BodyState& s,
+                           std::span<const Vec3> stick);
   void finish_impulse(const PreparedLaw& law, const Vec3& field, BodyState& s, std::span<Vec3> stick);
 
   /// Index into the model of the node of a contact point.

@@ -16,7 +16,7 @@ namespace {
 constexpr double k_least_tolerance = 1e-3;  // below it TR-BDF2 is cheaper
 constexpr double k_step = 6.3;              // over the tolerance, of sqrt(reach/g)
 constexpr double k_most_growth = 3;         // of that step, for bodies at rest
-constexpr double k_slow = 0.003;            // of sqrt(g reach), speed below which steps grow
+constexpr double k_slow = 0.05;             // of sqrt(g reach), speed below which steps grow
 constexpr double k_bounce_speed =
     0.05;                            // of sqrt(g reach), along the normal: what strikes faster is resolved
 constexpr double k_bounce = 0.5;     // rad in a step, of a bounce that is resolved: a bound of it
@@ -122,6 +122,13 @@ double RigidIsland::came(const Two& two, const std::vector<Known>& there) const 
   return shift.norm() + (bodies_[last].body->reach() + k_most_gap) * turn.norm();
 }
 
+// Bodies are there, and their stick springs.
+void RigidIsland::start(const State& state, const MemberSticks& sticks) {
+  coupling_.place_held(state);
+  go_to(state);
+  sticks.load(state, coupling_.pairs());
+}
+
 void RigidIsland::go_to(const State& state) {
   std::vector<Known> there;
   for (int b = 0; b < static_cast<int>(bodies_.size()); ++b) {
@@ -143,14 +150,6 @@ bool RigidIsland::knows(const ContactLaw& law, const State& state) const {
   return true;
 }
 
-void RigidIsland::find(const ContactLaw& law, const State& state, const MemberSticks& sticks, double h) {
-  if (h == h_ && knows(law, state)) return;
-  coupling_.place_held(state);
-  go_to(state);
-  sticks.load(state, coupling_.pairs());
-  look(law, state, h, 0);
-}
-
 void RigidIsland::take_gaps(std::span<const int> which) {
   coupling_.start(which);
   for (const int p : which) {
@@ -159,16 +158,13 @@ void RigidIsland::take_gaps(std::span<const int> which) {
   }
 }
 
-// What touches, or may within h, s, as bodies may come nearer by `more`, m, than is likely.
-void RigidIsland::look(const ContactLaw& law, const State& state, double h, double more) {
-  law_ = law;
-  h_ = h;
+// What touches where the bodies are, and with h > 0 what may within h, s. Stick springs are those at start_.
+void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
   const std::span<MemberPair> pairs = coupling_.pairs();
-  const std::vector<Vec3>& position = coupling_.position();
   which_.clear();
   for (Two& two : twos_) {
     two.near.clear();
-    two.ahead = more + coming(two, state, h);
+    two.ahead = h > 0 ? coming(two, state, h) : 0;
     two.least_unseen = two.least;
     if (two.least > two.closed + two.ahead) continue;
     two.least_unseen = std::numeric_limits<double>::infinity();
@@ -180,18 +176,23 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h, doub
       MemberPair& pair = pairs[p];
       pair.ahead = two.ahead;
       pair.gap = 0;
-      for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = position[pair.node[k]];
+      for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = start_[pair.node[k]];
       which_.push_back(p);
     }
   }
   ranges::sort(which_);
-  find_member_contacts(law, pairs, which_, position, coupling_.velocity(), position, now_);
+  find_member_contacts(law, pairs, which_, coupling_.position(), coupling_.velocity(), start_, now_);
   found_.assign(pairs.size(), false);
   for (const auto* list : {&now_.touches, &now_.ahead})
     for (const MemberTouch& touch : *list) {
       twos_[two_of_[touch.pair]].near.push_back(&touch);
       found_[touch.pair] = true;
     }
+  find_bounds();
+}
+
+// How far bodies may come nearer until pairs may touch, of those looked at.
+void RigidIsland::find_bounds() {
   stale_.clear();
   for (const int p : which_) {
     const Two& two = twos_[two_of_[p]];
@@ -224,7 +225,7 @@ RigidIsland::Together& RigidIsland::together(const std::vector<int>& bodies) {
 // With their contacts with planes.
 void RigidIsland::add_bodies(const StepSpan& span, const State& state, Together& set) {
   const double h = span.h;
-  const Vec3 field = span.parameters.gravity - span.start.floor;
+  const Vec3 field = span.parameters.gravity - (span.start.floor + span.end.floor) / 2;
   for (const int b : set.bodies) {
     const auto& [index, body] = bodies_[b];
     const BodyState& s = state.bodies[index];
@@ -242,7 +243,8 @@ void RigidIsland::add_bodies(const StepSpan& span, const State& state, Together&
     const auto add = [&](const NearContact& contact) {
       set.impulses.add(k, -1, body.contacts().grip(), false, contact);
     };
-    body.contacts().each_near(span.end.law, s, turned(s), state.stick, way, add);
+    const BodyState& before = start_of_[set.bodies[k]];
+    body.contacts().each_near(span.end.law, before, turned(before), s, turned(s), state.stick, way, add);
   }
 }
 
@@ -316,13 +318,21 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
   return true;
 }
 
-void RigidIsland::move(const StepSpan& span, State& next) {
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const auto& [index, body] = bodies_[b];
-    body->move_from_impulse(velocity_[b].linear, velocity_[b].angular, span.h, span.end.law,
-                            next.bodies[index], next.stick);
+// Freely, with their angular momenta.
+void RigidIsland::move(double h, State& state, StepEnergy& booked) {
+  from_ = coupling_.position();
+  for (const auto& [index, body] : bodies_) {
+    BodyState& s = state.bodies[index];
+    const PackMat3& inertia = body->inertia();
+    const auto energy = [&] {
+      const PackVec3 omega = packed(s.angular_velocity);
+      return 0.5 * dot(omega, inertia * omega);
+    };
+    const double before = energy();
+    body->move_freely(h, s);
+    booked.numerical += before - energy();
   }
-  go_to(next);
+  go_to(state);
 }
 
 // By how much more than was looked at bodies came nearer, where something may have met unseen, m.
@@ -332,15 +342,15 @@ double RigidIsland::missed() const {
   return most;
 }
 
-// Whether a pair went through each other.
+// Whether a pair went through each other in the newest move.
 bool RigidIsland::passed() const {
   for (const int p : which_) {
     const MemberPair& pair = coupling_.pairs()[p];
-    if (twos_[two_of_[p]].way > pair.L / 2 && moved_unseen(pair, start_, coupling_.position())) return true;
+    if (twos_[two_of_[p]].way > pair.L / 2 && moved_unseen(pair, from_, coupling_.position())) return true;
   }
   for (const MemberTouch& touch : now_.touches) {
     if (touch.input.depth < k_deep) continue;
-    for (const auto* list : {&before_.touches, &before_.ahead})
+    for (const auto* list : {&last_.touches, &last_.ahead})
       for (const MemberTouch& was : *list)
         if (was.pair == touch.pair && was.place == touch.place &&
             was.input.normal.dot(touch.input.normal) < 0)
@@ -360,37 +370,27 @@ void RigidIsland::take_sticks() {
     }
 }
 
-// J, in springs of contacts; in stick springs between members.
-double RigidIsland::held(const ContactLaw& law) const {
-  double held = stored_energy(law, now_, coupling_.pairs());
-  for (const ModelBody& b : bodies_) held += b.body->contacts().energy(law);
-  return held;
-}
-double RigidIsland::held_by_sticks() const {
-  double held = 0;
-  for (const MemberTouch& touch : now_.touches) held += touch.out.stick_energy;
+RigidIsland::Held RigidIsland::held(const ContactLaw& law) const {
+  Held held{stored_energy(law, now_, coupling_.pairs()), 0};
+  for (const ModelBody& b : bodies_) held.all += b.body->contacts().energy(law);
+  for (const MemberTouch& touch : now_.touches) held.sticks += touch.out.stick_energy;
   return held;
 }
 
-void RigidIsland::book(const StepSpan& span, const State& next, double held_before, double sticks_before,
+void RigidIsland::book(const StepSpan& span, const State& next, const Held& before,
                        StepEnergy& booked) const {
-  const Vec3& floor = span.start.floor;
-  double in_sticks = held_by_sticks() - sticks_before;
+  const Vec3 floor = (span.start.floor + span.end.floor) / 2;
+  const Held now = held(span.end.law);
+  double in_sticks = now.sticks - before.sticks;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto& [index, body] = bodies_[b];
-    const BodyState &s = next.bodies[index], &s0 = start_of_[b];
-    const Vec3 shift = s.position - s0.position, gain = s.velocity - s0.velocity;
-    const PackVec3 &angular = velocity_[b].angular, omega = packed(s.angular_velocity);
+    const Vec3 shift = next.bodies[index].position - start_of_[b].position;
     in_sticks += body->contacts().stick_energy_gained();
     booked.gravity -= body->mass() * span.parameters.gravity.dot(shift);
     booked.input -= body->mass() * floor.dot(shift);
-    // they move at the velocity of the end, and turn with their angular momentum
-    booked.numerical +=
-        span.h * body->mass() / 2 * (span.parameters.gravity - floor).dot(gain) +
-        0.5 * (dot(angular, body->inertia_at(turned(s0)) * angular) - dot(omega, body->inertia() * omega));
   }
   booked.friction += work_.friction - in_sticks;
-  booked.normal_damping += work_.normal - (held(span.end.law) - held_before - in_sticks);
+  booked.normal_damping += work_.normal - (now.all - before.all - in_sticks);
 }
 
 // s, that is tried next at `state`.
@@ -410,41 +410,59 @@ StepStatus::Kind RigidIsland::advance(const StepSpan& span, State& next, MemberS
   std::deque<BodyContacts::ScratchLease> leases;
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     leases.emplace_back(bodies_[b].body->contacts(), buffers_[b]);
-  // what is looked at follows from the state: a run that goes on from one has the same bits
-  find(law, next, sticks, std::max(span.h, time_limit(span.parameters, next)));
-  const double held_before = held(law), sticks_before = held_by_sticks();
+  if (!knows(law, next)) {
+    start(next, sticks);
+    start_ = coupling_.position();
+    look(law, next, 0);
+  }
+  const Held before = held(law);
+  forget();  // until it has succeeded
   start_of_.clear();
   for (const ModelBody& b : bodies_) start_of_.push_back(next.bodies[b.index]);
-  start_ = coupling_.position();
-  forget();  // until it has succeeded
+  move(span.h / 2, next, booked);
+  std::swap(last_, now_);
+  start_ = from_;
+  look(law, next, span.h / 2);
+  if (passed()) return StepStatus::Kind::passed_through;
   if (!solve(span, next)) return StepStatus::Kind::newton_diverged;
-  move(span, next);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyState& s = next.bodies[bodies_[b].index];
+    s.velocity = unpacked(velocity_[b].linear);
+    s.angular_velocity = unpacked(transposed_times(turned(s), velocity_[b].angular));
+  }
+  move(span.h / 2, next, booked);
   if (missed() > 0) return StepStatus::Kind::passed_through;
   take_sticks();
-  std::swap(before_, now_);
+  std::swap(last_, now_);
+  start_ = coupling_.position();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto& [index, body] = bodies_[b];
-    body->finish_impulse(law, span.parameters.gravity - span.end.floor, next.bodies[index], next.stick);
+    body->find_contacts_after(start_of_[b], law, next.bodies[index], next.stick);
   }
-  const double wanted = next_step(span.parameters, span.h, next);
-  for (std::size_t b = 0; b < bodies_.size(); ++b)
-    here_[b].substep = next.bodies[bodies_[b].index].substep = wanted;
-  look(law, next, time_limit(span.parameters, next), 0);
-  if (passed()) {
-    forget();
-    return StepStatus::Kind::passed_through;
-  }
-  book(span, next, held_before, sticks_before, booked);
-  // what is open at the end holds none
-  for (MemberTouch& touch : now_.touches) touch.out.stick = touch.input.stick;
-  for (MemberTouch& touch : now_.ahead) {
-    touch.input.stick.setZero();
-    coupling_.pairs()[touch.pair].stick[touch.place].setZero();
-  }
-  sticks.store(now_.touches, coupling_.pairs(), next);
-  const std::vector<BodyVelocity>& loads = coupling_.loads(now_, coupling_.pairs());
-  for (std::size_t b = 0; b < bodies_.size(); ++b) add_load(loads[b], next.bodies[bodies_[b].index]);
+  look(law, next, 0);
+  if (passed()) return StepStatus::Kind::passed_through;
+  book(span, next, before, booked);
+  finish(span, next, sticks);
   return StepStatus::Kind::ok;
+}
+
+// What acts at the end, and what is tried next.
+void RigidIsland::finish(const StepSpan& span, State& next, MemberSticks& sticks) {
+  const double wanted = next_step(span.parameters, span.h, next);
+  const std::vector<BodyVelocity>& loads = coupling_.loads(now_, coupling_.pairs());
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    BodyState& s = next.bodies[bodies_[b].index];
+    bodies_[b].body->finish_impulse(span.end.law, span.parameters.gravity - span.end.floor, s, next.stick);
+    add_load(loads[b], s);
+    here_[b].substep = s.substep = wanted;
+  }
+  for (MemberTouch& touch : now_.touches) touch.out.stick = touch.input.stick;
+  sticks.store(now_.touches, coupling_.pairs(), next);
+  // what is open at the end holds none
+  for (const int p : which_) coupling_.pairs()[p].stick.fill(Vec3::Zero());
+  for (const MemberTouch& touch : now_.touches)
+    coupling_.pairs()[touch.pair].stick[touch.place] = touch.input.stick;
+  law_ = span.end.law;
 }
 
 }  // namespace topple

@@ -1,11 +1,9 @@
-// Rigid bodies that touch each other, or may within a step, advanced by impulses (contact_impulses.h): a step
-// looks once who touches whom, finds the velocities that all contacts leave, and lets the bodies move freely
-// with them,
-//   x1 = x0 + h u1,  R with its angular momentum kept (Lie midpoint),
-// which is the symplectic Euler method while no contact opens, closes or slips: an error of first order, by
-// which velocities are half a step late. So steps are short: h = 6.3 tolerance sqrt(reach/g), up to three
-// times that where nothing moves; and blows are resolved, of which even restitution 0 leaves a tenth (eps of
-// the coulomb law).
+// Rigid bodies that touch each other, or may within a step, advanced by impulses (contact_impulses.h): they
+// move freely for half a step, contacts there say with what velocities they go on, and they move freely for
+// the other half,
+//   x = x0 + h/2 u0 + h/2 u1,  R with its angular momentum kept (Lie midpoint),
+// so that a step looks once who touches whom. It is of second order while no contact opens, closes or slips.
+// Its length is 6.3 tolerance sqrt(reach/g), up to three times that where nothing moves; blows are resolved.
 #pragma once
 
 #include <memory>
@@ -80,22 +78,25 @@ class RigidIsland {
   }
   double coming(const Two& two, const State& state, double h) const;
   double came(const Two& two, const std::vector<Known>& there) const;
+  void start(const State& state, const MemberSticks& sticks);
   void go_to(const State& state);
-  void find(const ContactLaw& law, const State& state, const MemberSticks& sticks, double h);
-  void look(const ContactLaw& law, const State& state, double h, double more);
+  void look(const ContactLaw& law, const State& state, double h);
+  void find_bounds();
   void take_gaps(std::span<const int> which);
   Together& together(const std::vector<int>& bodies);
   bool solve(const StepSpan& span, const State& state);
   void add_bodies(const StepSpan& span, const State& state, Together& set);
   void add_contacts(const PreparedLaw& law, const Two& two, Together& set);
-  void move(const StepSpan& span, State& next);
+  void move(double h, State& state, StepEnergy& booked);
   double missed() const;
   bool passed() const;
   void take_sticks();
-  double held(const ContactLaw& law) const;
-  double held_by_sticks() const;
-  void book(const StepSpan& span, const State& next, double held_before, double sticks_before,
-            StepEnergy& booked) const;
+  struct Held {
+    double all, sticks;  // J, by contacts; of that by stick springs between members
+  };
+  Held held(const ContactLaw& law) const;
+  void book(const StepSpan& span, const State& next, const Held& before, StepEnergy& booked) const;
+  void finish(const StepSpan& span, State& next, MemberSticks& sticks);
   double next_step(const Parameters& parameters, double h, const State& state) const;
 
   const std::vector<ModelBody>& bodies_;
@@ -109,13 +110,12 @@ class RigidIsland {
   // What is known, where and with what.
   std::vector<Known> here_;  // per body
   std::optional<ContactLaw> law_;
-  double h_ = 0;  // s, step within which what now_ lists may touch
   MemberContacts now_;
   std::vector<int> which_;  // pairs looked at
   // Of a step.
-  MemberContacts before_;
-  std::vector<Vec3> start_;  // m, per node of the coupling
-  std::vector<BodyState> start_of_;
+  MemberContacts last_;              // where bodies were looked at before
+  std::vector<Vec3> start_, from_;   // m, per node of the coupling: of stick springs; before the newest move
+  std::vector<BodyState> start_of_;  // per body
   std::vector<Together*> used_;
   std::vector<ContactImpulses::Velocity> velocity_;  // per body
   ContactImpulses::Work work_;

@@ -45,7 +45,7 @@ double root(const std::function<double(double)>& f, double low, double high) {
 }
 
 // One contact under the centre: the velocity along its normal solves one equation, here by bisection,
-//   m (u - u0) = h (F + P(gap + theta h u) (1 - u/sqrt(u^2 + eps^2))),  theta = w^2/(16 + w^2),
+//   m (u - u0) = h (F + P(gap + theta h/2 u) (1 - u/sqrt(u^2 + eps^2))),  theta = w^2/(16 + w^2),
 // and friction takes mu N h of the momentum across.
 TEST(ContactImpulses, one_contact_takes_what_the_law_says) {
   const ContactLaw law = stiff_law();
@@ -62,7 +62,7 @@ TEST(ContactImpulses, one_contact_takes_what_the_law_says) {
       const double turn = k_h * impulses.frequency(), theta = turn * turn / (16 + turn * turn);
       EXPECT_NEAR(turn, k_h * std::sqrt(law.alpha / k_length / k_mass), 1e-12);
       const auto normal = [&](double u) {
-        const double depth = std::max(0., -(gap + theta * k_h * u) / k_length);
+        const double depth = std::max(0., -(gap + theta * k_h / 2 * u) / k_length);
         return law.alpha * depth * (1 - u / std::hypot(u, law.normal_speed));
       };
       const double expected =
