@@ -223,6 +223,7 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
     body->remember(next.anchors);
     body->take(span.start.pulls);
   }
+  coupling_.ties().remember(next.anchors);
   if (rigid_.takes(span.parameters, span.start.law, span.end.law, next))
     advance_by_impulses(span, next, outcome);
   else
@@ -234,7 +235,6 @@ void IslandPart::advance(const StepSpan& span, State& next, PartScratch& scratch
 }
 
 void IslandPart::advance_by_impulses(const StepSpan& span, State& next, PartOutcome& outcome) {
-  coupling_.ties().remember(next.anchors);
   for (const auto& [index, body] : bodies_) body->find_contacts(span.start, next.bodies[index], next.stick);
   outcome.status.kind = rigid_.advance(span, next, sticks_, outcome.exchanged);
   outcome.status.time = span.end.time;
@@ -258,6 +258,7 @@ void IslandPart::advance_by_substeps(const StepSpan& span, State& next, PartScra
 
 double IslandPart::time_limit(const Parameters& parameters, const State& state) {
   for (const auto& [index, body] : bodies_) body->remember(state.anchors);
+  coupling_.ties().remember(state.anchors);
   if (const ContactLaw now = contact_law(parameters, state.time); rigid_.takes(parameters, now, now, state))
     return rigid_.time_limit(parameters, state);
   double limit = ReducedPart::time_limit(parameters, state);

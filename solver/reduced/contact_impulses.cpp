@@ -104,7 +104,7 @@ void ContactImpulses::evaluate(BlockLu* matrix) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const RigidBody& body = bodies_[b];
     const PackVec3 linear = body.mass * (u_[b].linear - body.linear) - h_ * body.force,
-                   angular = body.inertia * (u_[b].angular - body.angular);
+                   angular = body.inertia * (u_[b].angular - body.angular) - h_ * body.moment;
     put({linear, angular, {}}, 0, &left_[6 * b]);
     if constexpr (sums == Sums::slopes) {
       Mat6 own = Mat6::Zero();

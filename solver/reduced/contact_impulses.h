@@ -20,12 +20,12 @@ namespace topple {
 /// Of one set of bodies in one step after the other: begin, add, then solve.
 class ContactImpulses {
  public:
-  /// A body's start: velocities as BodyVelocity's, and what acts on it besides contacts, N.
+  /// A body's start: velocities as BodyVelocity's, and what acts on it besides contacts, N, N m.
   struct RigidBody {
     double mass, least_inertia, reach;  ///< kg, kg m^2, m
     PackMat3 inertia;                   ///< kg m^2, floor's axes
     PackVec3 linear, angular;
-    PackVec3 force;
+    PackVec3 force, moment;
     double stiffness = 0;  ///< 1/s^2, of all its contacts
   };
   struct Velocity {

@@ -226,12 +226,37 @@ Vec3 MemberCoupling::arm(const MemberTouch& touch, const MemberPair& pair, int s
   return side == 0 ? arm : Vec3(-arm);
 }
 
-const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& contacts,
-                                                       std::span<const MemberPair> pairs) {
+void MemberCoupling::clear_loads() {
   for (BodyVelocity& load : loads_) {
     load.linear = load.angular = {0, 0, 0};
     load.rate.setZero();
   }
+}
+
+void MemberCoupling::add_blends(const MemberContacts& contacts, std::span<const MemberPair> pairs) {
+  for (const MemberBlend& blend : contacts.blends)
+    for (int k = 0; k < pairs[blend.pair].nodes(); ++k) {
+      const int node = pairs[blend.pair].node[k], body = nodes_[node].body;
+      if (body < 0) continue;
+      const Vec3 force = -blend.slope * blend.surplus * blend.by_sine[k];
+      BodyVelocity& load = loads_[body];
+      load.linear = load.linear + packed(force);
+      load.angular = load.angular + packed(Vec3(arm_[node].cross(force)));
+      for (int mode = 0; mode < modes_[body]; ++mode)
+        load.rate[mode] += shape_[node * k_modes + mode].dot(force);
+    }
+}
+
+const std::vector<BodyVelocity>& MemberCoupling::blend_loads(const MemberContacts& contacts,
+                                                             std::span<const MemberPair> pairs) {
+  clear_loads();
+  add_blends(contacts, pairs);
+  return loads_;
+}
+
+const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& contacts,
+                                                       std::span<const MemberPair> pairs) {
+  clear_loads();
   for (const MemberTouch& touch : contacts.touches) {
     const MemberPair& pair = pairs[touch.pair];
     const Vec3& force = touch.out.force;
@@ -251,17 +276,7 @@ const std::vector<BodyVelocity>& MemberCoupling::loads(const MemberContacts& con
       }
     }
   }
-  for (const MemberBlend& blend : contacts.blends)
-    for (int k = 0; k < pairs[blend.pair].nodes(); ++k) {
-      const int node = pairs[blend.pair].node[k], body = nodes_[node].body;
-      if (body < 0) continue;
-      const Vec3 force = -blend.slope * blend.surplus * blend.by_sine[k];
-      BodyVelocity& load = loads_[body];
-      load.linear = load.linear + packed(force);
-      load.angular = load.angular + packed(Vec3(arm_[node].cross(force)));
-      for (int mode = 0; mode < modes_[body]; ++mode)
-        load.rate[mode] += shape_[node * k_modes + mode].dot(force);
-    }
+  add_blends(contacts, pairs);
   ties_.add_loads(loads_);
   return loads_;
 }

@@ -72,6 +72,9 @@ class MemberCoupling {
   /// Of the forces on nodes and of anchors between the bodies, per body: N, N m about the centre of gravity,
   /// N/sqrt(kg).
   const std::vector<BodyVelocity>& loads(const MemberContacts& contacts, std::span<const MemberPair> pairs);
+  /// The part of them by MemberContacts::blends.
+  const std::vector<BodyVelocity>& blend_loads(const MemberContacts& contacts,
+                                               std::span<const MemberPair> pairs);
   /// Calls add with the parts of J^T t J, t: PairTangent of all that touches, and with those of anchors.
   /// Block (i, j) of six unknowns belongs to group i of body a and j of b.
   using AddBlock = BodyTies::AddBlock;
@@ -89,6 +92,8 @@ class MemberCoupling {
     Vec3 place;      // m, from the centre of gravity, reference axes
   };
   int number_of(int node);
+  void clear_loads();
+  void add_blends(const MemberContacts& contacts, std::span<const MemberPair> pairs);
   void add_blocks(const PairTangent& tangent, const MemberPair& pair, const AddBlock& add) const;
   Vec3 acceleration(int node) const;
   Vec3 shape(const Node& node, int mode) const;

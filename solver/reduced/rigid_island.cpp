@@ -19,7 +19,7 @@ constexpr double k_most_growth = 3;         // of that step, for bodies at rest
 constexpr double k_slow = 0.05;             // of sqrt(g reach), speed below which steps grow
 constexpr double k_bounce_speed =
     0.05;                            // of sqrt(g reach), along the normal: what strikes faster is resolved
-constexpr double k_bounce = 0.5;     // rad in a step, of a bounce that is resolved: a bound of it
+constexpr double k_bounce = 0.25;    // rad in a step, of a bounce that is resolved: a bound of it
 constexpr double k_likely = 1.5;     // times the way that the motion at the start says: may be more
 constexpr double k_more_way = 2e-4;  // m
 constexpr double k_stale = 5e-4;     // m, by which bodies come nearer until a gap is found anew
@@ -69,7 +69,9 @@ bool takes_impulses(const Parameters& parameters) {
 
 bool RigidIsland::takes(const Parameters& parameters, const ContactLaw& before, const ContactLaw& after,
                         const State& state) const {
-  return takes_impulses(parameters) && before == after && traits(after).sticks &&
+  bool tied = false;
+  coupling_.ties().each_in_place([&](int, int) { tied = true; });
+  return !tied && takes_impulses(parameters) && before == after && traits(after).sticks &&
          ranges::all_of(bodies_, [&](const ModelBody& b) {
            return state.bodies[b.index].level == ModelLevel::rigid && b.body->is_free();
          });
@@ -232,8 +234,9 @@ void RigidIsland::add_bodies(const StepSpan& span, const State& state, Together&
     const PackMat3 r = turned(s);
     const PackVec3 linear = packed(s.velocity), angular = r * packed(s.angular_velocity),
                    turning = r * (body->inverse_inertia() * transposed_times(r, packed(s.moment)));
+    const BodyVelocity& blend = blends_[b];
     set.impulses.add({body->mass(), body->least_inertia(), body->reach(), body->inertia_at(r), linear,
-                      angular, packed(Vec3(body->mass() * field))},
+                      angular, packed(Vec3(body->mass() * field)) + blend.linear, blend.angular},
                      {mul_add(h / body->mass(), packed(s.force), linear), mul_add(h, turning, angular)});
   }
   for (int k = 0; k < static_cast<int>(set.bodies.size()); ++k) {
@@ -288,6 +291,7 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
   std::vector<Together*> set_of(count);
   velocity_.resize(count);
   work_ = {};
+  blends_ = coupling_.blend_loads(now_, coupling_.pairs());
   used_.clear();
   for (const std::vector<int>& bodies : sets) {
     if (bodies.empty()) continue;
@@ -312,8 +316,15 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
     const ContactImpulses::Work work = set->impulses.finish();
     work_.normal += work.normal;
     work_.friction += work.friction;
-    for (std::size_t k = 0; k < set->bodies.size(); ++k)
-      velocity_[set->bodies[k]] = set->impulses.velocities()[k];
+    for (std::size_t k = 0; k < set->bodies.size(); ++k) {
+      const int b = set->bodies[k];
+      const BodyState& s = state.bodies[bodies_[b].index];
+      velocity_[b] = set->impulses.velocities()[k];
+      work_.normal -=
+          span.h / 2 *
+          (dot(blends_[b].linear, packed(s.velocity) + velocity_[b].linear) +
+           dot(blends_[b].angular, turned(s) * packed(s.angular_velocity) + velocity_[b].angular));
+    }
   }
   return true;
 }

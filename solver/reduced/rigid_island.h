@@ -118,6 +118,7 @@ class RigidIsland {
   std::vector<BodyState> start_of_;  // per body
   std::vector<Together*> used_;
   std::vector<ContactImpulses::Velocity> velocity_;  // per body
+  std::vector<BodyVelocity> blends_;                 // per body, what MemberContacts::blends do: held
   ContactImpulses::Work work_;
   bool bounces_ = false;     // something struck
   std::vector<int> place_;   // per body, within its set

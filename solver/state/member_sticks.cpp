@@ -13,6 +13,11 @@ bool in_order(const MemberStick& a, const MemberStick& b) {
   return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
 }
 
+void sort(std::vector<MemberStick>& sticks) {
+  if (!std::is_sorted(sticks.begin(), sticks.end(), in_order))
+    std::sort(sticks.begin(), sticks.end(), in_order);
+}
+
 // Those of `pairs` become those in `sticks`. All are in order.
 void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& sticks,
              std::vector<MemberStick>& all) {
@@ -23,9 +28,8 @@ void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& 
   };
   std::erase_if(all, own);
   pair = pairs.begin();
-  const auto kept = static_cast<std::ptrdiff_t>(all.size());
   ranges::copy_if(sticks, std::back_inserter(all), own);
-  if (kept > 0) std::inplace_merge(all.begin(), all.begin() + kept, all.end(), in_order);
+  sort(all);
 }
 
 }  // namespace
@@ -46,10 +50,7 @@ void MemberSticks::store(std::span<const MemberTouch> touches, std::span<const M
   new_.clear();
   for (const MemberTouch& touch : touches)
     new_.push_back({pairs[touch.pair].elements, touch.place, touch.out.stick});
-  // those of members come in order, then those of panels
-  const auto panels = std::is_sorted_until(new_.begin(), new_.end(), in_order);
-  std::sort(panels, new_.end(), in_order);
-  std::inplace_merge(new_.begin(), panels, new_.end(), in_order);
+  sort(new_);
   replace(pairs, new_, keeps_ ? own_ : state.member_sticks);
 }
 

@@ -22,8 +22,8 @@ ContactLaw stiff_law() {
 /// A ball of radius 0.4 m, with a pull of F, N.
 ContactImpulses::RigidBody ball(const Vec3& linear, const Vec3& pull, double mass = k_mass) {
   const double inertia = 0.4 * mass * 0.16;
-  return {mass,           inertia,   0.4,         diagonal(PackVector<double>{inertia, inertia, inertia}),
-          packed(linear), {0, 0, 0}, packed(pull)};
+  return {mass,           inertia,   0.4,          diagonal(PackVector<double>{inertia, inertia, inertia}),
+          packed(linear), {0, 0, 0}, packed(pull), {0, 0, 0}};
 }
 
 NearContact under(const Vec3& arm, double gap, const ContactLaw& law) {
