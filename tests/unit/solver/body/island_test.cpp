@@ -356,7 +356,7 @@ TEST(Island, row_falls_as_frames_do) {
   EXPECT_GT(fallen, 0);
 }
 
-// A row that is pushed over. Two blows, each resolved to a tenth of the step of 2 ms, and the fall between them.
+// A row that is pushed over: two blows, each resolved to a tenth of the step of 2 ms, and the falls between.
 TEST(Island, row_falls_by_impulses_when_it_does_by_substeps) {
   const auto last_falls = [](double tolerance) {
     topple::Setup setup = row(3, 0.1, BodyModel::rigid);
