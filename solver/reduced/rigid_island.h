@@ -2,7 +2,7 @@
 // move freely for half a step, contacts there say with what velocities they go on, and they move freely for
 // the other half,
 //   x = x0 + h/2 u0 + h/2 u1,  R with its angular momentum kept (Lie midpoint),
-// so that a step looks once who touches whom. It is of second order while no contact opens, closes or slips.
+// and a look at the end tells what acts there. It is of second order while no contact opens, closes or slips.
 // Its length is 6.3 tolerance sqrt(reach/g), up to three times that where nothing moves; blows are resolved.
 #pragma once
 
