@@ -167,26 +167,12 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
   for (const MemberBlend& blend : contacts.blends) add_all(blend_tangent(blend));
 }
 
-namespace {
-
-void take_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
+void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
+  for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
   for (MemberTouch& touch : contacts.touches) {
     pairs[touch.pair].stick[touch.place] = touch.input.stick = touch.out.stick;
     if (traits(law).sticks && slips(law, touch)) touch.out = contact_force(weighted(law, touch), touch.input);
   }
-}
-
-}  // namespace
-
-void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs) {
-  for (MemberPair& pair : pairs) pair.stick.fill(Vec3::Zero());
-  take_sticks(law, contacts, pairs);
-}
-
-void keep_sticks(const ContactLaw& law, std::span<const int> which, MemberContacts& contacts,
-                 std::span<MemberPair> pairs) {
-  for (const int p : which) pairs[p].stick.fill(Vec3::Zero());
-  take_sticks(law, contacts, pairs);
 }
 
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

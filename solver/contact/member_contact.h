@@ -156,9 +156,6 @@ void add_tangent(const ContactLaw& law, const MemberContacts& contacts, std::spa
 /// What touches leaves its stick springs in `pairs`; those of other places become zero. Springs that slipped
 /// are shorter from here on, and forces those of the shorter ones.
 void keep_sticks(const ContactLaw& law, MemberContacts& contacts, std::span<MemberPair> pairs);
-/// The same where only the pairs `which` have springs.
-void keep_sticks(const ContactLaw& law, std::span<const int> which, MemberContacts& contacts,
-                 std::span<MemberPair> pairs);
 
 /// Energy in normal springs (of laws that store it) and stick springs, J.
 double stored_energy(const ContactLaw& law, const MemberContacts& contacts,

@@ -17,7 +17,7 @@
 
 namespace topple {
 
-/// Of one set of bodies in one step after the other: begin, add, then solve.
+/// One set of bodies, in one step after the other: begin, add, solve, finish.
 class ContactImpulses {
  public:
   /// A body's start: velocities as BodyVelocity's, and what acts on it besides contacts, N, N m.
@@ -41,10 +41,10 @@ class ContactImpulses {
   /// `guess`: where the search for its velocity begins.
   void add(const RigidBody& body, const Velocity& guess);
   /// Between bodies by their order of addition; second -1: a plane or what is held. grip: Body::grip.
-  /// hardens: as between members (penalty_force).
-  /// The contact's number, for stick().
+  /// hardens: as between members (penalty_force). Returns the contact's number, for stick().
   int add(int first, int second, double grip, bool hardens, const NearContact& contact);
-  /// Whether a contact that is closed, or closes in the step, closes or opens faster than `speed`, m/s.
+  /// Whether at a contact that is closed, or closes in the step, the bodies meet or part faster than `speed`,
+  /// m/s.
   bool strikes(double speed) const;
   /// 1/s, of the bodies on their contacts: none is higher.
   double frequency() const;

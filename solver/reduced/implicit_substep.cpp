@@ -289,26 +289,39 @@ void ImplicitSubstep::finish(StepEnergy& booked) {
                       0.5 * (dot(two_.spin, two_.u.angular) - dot(spin0_, omega0_));
   book_modes(booked);
   contacts.book_law_change(span_.start.law, span_.end.law, booked);
-  contacts.keep_sticks(span_.end.law, stick_);
-  // not the stage's: springs that slipped are shorter now, and the next substep compares its forces with
-  // these
-  const ContactLoads loads = body_.respond_at<ContactSums::loads>(span_.end.law, s_);
-  s_.force = unpacked(loads.force + mass * (gravity_ - floor2));
-  s_.moment = unpacked(loads.moment);
-  if (modes_ > 0) {
-    s_.load.setZero();
-    contacts.modal_loads(modes_, s_.load);
-    body_.anchors_.modal_loads(s_, modes_, s_.load);
-  }
-  if (body_.anchors_.any()) {
-    s_.force += body_.anchors_.force();
-    s_.moment += body_.anchors_.moment();
-  }
+  // not the stage's forces: springs that slipped are shorter now, and the next substep compares its forces
+  // with these
+  body_.finish_substep(span_.end.law, parameters.gravity - span_.end.floor, s_, stick_);
 }
 
 void ImplicitSubstep::give_up() {
   s_ = before_;
   body_.contacts_.give_up_substep();
+}
+
+void ReducedBody::find_contacts_after(const BodyState& before, const PreparedLaw& law, const BodyState& s,
+                                      std::span<const Vec3> stick) {
+  const PackMat3 r = rotation_matrix(packed(s.rotation));
+  contacts_.begin_substep();
+  contacts_.find(s, r, stick);
+  contacts_.follow(before, rotation_matrix(packed(before.rotation)), s, r);
+  respond_at<ContactSums::none>(law, s);
+}
+
+void ReducedBody::finish_substep(const PreparedLaw& law, const Vec3& field, BodyState& s,
+                                 std::span<Vec3> stick) {
+  contacts_.keep_sticks(law, stick);
+  const ContactLoads loads = respond_at<ContactSums::loads>(law, s);
+  s.force = unpacked(loads.force + mass_ * packed(field));
+  s.moment = unpacked(loads.moment);
+  if (modes(s) > 0) {
+    s.load.setZero();
+    contacts_.modal_loads(modes(s), s.load);
+    anchors_.modal_loads(s, modes(s), s.load);
+  }
+  if (!anchors_.any()) return;
+  s.force += anchors_.force();
+  s.moment += anchors_.moment();
 }
 
 // A first guess at a substep that follows a touch.

@@ -74,7 +74,6 @@ void ReducedBody::find_propagator(double h, double damping) {
   }
 }
 
-// Returns the turn, a rotation vector in material axes.
 Vec3 ReducedBody::drift(double h, BodyState& s) const {
   s.position += h * s.velocity;
   // The angular momentum stays. Lie midpoint for the turn: from the velocity in the middle of the step.
@@ -392,23 +391,6 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
     }
   }
   return implicit ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
-}
-
-void ReducedBody::find_contacts_after(const BodyState& before, const PreparedLaw& law, const BodyState& s,
-                                      std::span<const Vec3> stick) {
-  const PackMat3 r = rotation_matrix(packed(s.rotation));
-  contacts_.begin_substep();
-  contacts_.find(s, r, stick);
-  contacts_.follow(before, rotation_matrix(packed(before.rotation)), s, r);
-  respond_at<ContactSums::none>(law, s);
-}
-
-void ReducedBody::finish_impulse(const PreparedLaw& law, const Vec3& field, BodyState& s,
-                                 std::span<Vec3> stick) {
-  contacts_.keep_sticks(law, stick);
-  const ContactLoads loads = respond_at<ContactSums::loads>(law, s);
-  s.force = mass_ * field + unpacked(loads.force);
-  s.moment = unpacked(loads.moment);
 }
 
 double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {

@@ -94,13 +94,15 @@ class ReducedBody {
   /// Neither an anchor nor a pull holds it.
   bool is_free() const { return !anchors_.any(); }
 
-  /// A rigid body moves freely for h, s.
-  void move_freely(double h, BodyState& s) const { drift(h, s); }
-  /// At the end `s` of a step from `before` its contacts, with springs that were `stick`, are found; then
-  /// what they and `field`, m/s^2, do to it.
+  /// Free motion for h, s; returns the turn, a rotation vector in material axes.
+  Vec3 drift(double h, BodyState& s) const;
+  /// At the end `s` of a substep from `before` its contacts, with springs that were `stick`, are found, as
+  /// those at its start were (BodyContacts::ScratchLease).
   void find_contacts_after(const BodyState& before, const PreparedLaw& law, const BodyState& s,
                            std::span<const Vec3> stick);
-  void finish_impulse(const PreparedLaw& law, const Vec3& field, BodyState& s, std::span<Vec3> stick);
+  /// Then springs that slipped are shorter in `stick`, and forces of `s` are those of the shorter ones, of
+  /// anchors as found last and of `field`, m/s^2.
+  void finish_substep(const PreparedLaw& law, const Vec3& field, BodyState& s, std::span<Vec3> stick);
 
   /// Index into the model of the node of a contact point.
   int node_of(int point) const { return model_.contact_points[point].node; }
@@ -168,7 +170,6 @@ class ReducedBody {
                                    const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
                                    StepEnergy& energy, ReducedScratch& w);
   void find_propagator(double h, double damping);
-  Vec3 drift(double h, BodyState& s) const;
   double stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
   double find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const;
 

@@ -49,17 +49,19 @@ RigidIsland::RigidIsland(const std::vector<ModelBody>& bodies, MemberCoupling& c
   for (const MemberPair& pair : coupling.pairs()) {
     const auto [a, b] = coupling.bodies_of(pair);
     const int first = std::max(a, b), second = std::min(a, b);
-    const auto same = [first, second](const Two& two) { return two.first == first && two.second == second; };
-    auto two = ranges::find_if(twos_, same);
-    if (two == twos_.end()) {
-      twos_.push_back({first, second, {}, 0, 0, 0, 0, 0, {}});
-      two = twos_.end() - 1;
+    const auto same = [first, second](const BodyPair& both) {
+      return both.first == first && both.second == second;
+    };
+    auto both = ranges::find_if(body_pairs_, same);
+    if (both == body_pairs_.end()) {
+      body_pairs_.push_back({first, second, {}, 0, 0, 0, 0, 0, {}});
+      both = body_pairs_.end() - 1;
     }
-    two->pairs.push_back(static_cast<int>(two_of_.size()));
-    two_of_.push_back(static_cast<int>(two - twos_.begin()));
+    both->pairs.push_back(static_cast<int>(body_pair_of_.size()));
+    body_pair_of_.push_back(static_cast<int>(both - body_pairs_.begin()));
   }
-  open_until_.assign(two_of_.size(), 0);
-  seen_.assign(two_of_.size(), 0);
+  open_until_.assign(body_pair_of_.size(), 0);
+  seen_.assign(body_pair_of_.size(), 0);
 }
 
 bool takes_impulses(const Parameters& parameters) {
@@ -88,16 +90,16 @@ double RigidIsland::time_limit(const Parameters& parameters, const State& state)
   return limit;
 }
 
-// Bound of the way by which members of two bodies come nearer within h, m, as they move at the start. What
+// Bound of the way by which members of both bodies come nearer within h, m, as they move at the start. What
 // acts on them is not asked: it is known only when this is.
-double RigidIsland::coming(const Two& two, const State& state, double h) const {
-  const auto& [last, of_last] = bodies_[two.second < 0 ? two.first : two.second];
+double RigidIsland::coming(const BodyPair& both, const State& state, double h) const {
+  const auto& [last, of_last] = bodies_[both.second < 0 ? both.first : both.second];
   const Vec3 at = state.bodies[last].position;
   Vec3 speed = Vec3::Zero(), spin = Vec3::Zero();  // of the first to the second
-  for (const int b : {two.first, two.second}) {
+  for (const int b : {both.first, both.second}) {
     if (b < 0) continue;
     const BodyState& s = state.bodies[bodies_[b].index];
-    const double sign = b == two.first ? 1 : -1;
+    const double sign = b == both.first ? 1 : -1;
     const Vec3 own = s.rotation * s.angular_velocity;
     speed += sign * (s.velocity + own.cross(at - s.position));
     spin += sign * own;
@@ -106,12 +108,12 @@ double RigidIsland::coming(const Two& two, const State& state, double h) const {
 }
 
 // The same of the way from here_.
-double RigidIsland::came(const Two& two, const std::vector<Known>& there) const {
-  const int last = two.second < 0 ? two.first : two.second;
+double RigidIsland::came(const BodyPair& both, const std::vector<Known>& there) const {
+  const int last = both.second < 0 ? both.first : both.second;
   const Vec3 at = here_[last].position;
   Vec3 shift = Vec3::Zero();
   Mat3 turn = Mat3::Zero();
-  for (const int b : {two.first, two.second}) {
+  for (const int b : {both.first, both.second}) {
     Mat3 own = Mat3::Identity();
     Vec3 way = Vec3::Zero();
     if (b >= 0) {
@@ -139,9 +141,9 @@ void RigidIsland::go_to(const State& state) {
     coupling_.place(b, s);
   }
   if (here_.empty())
-    for (const Two& two : twos_) take_gaps(two.pairs);
+    for (const BodyPair& both : body_pairs_) take_gaps(both.pairs);
   else
-    for (Two& two : twos_) two.closed += two.way = came(two, there);
+    for (BodyPair& both : body_pairs_) both.closed += both.way = came(both, there);
   here_ = std::move(there);
 }
 
@@ -155,7 +157,7 @@ bool RigidIsland::knows(const ContactLaw& law, const State& state) const {
 void RigidIsland::take_gaps(std::span<const int> which) {
   coupling_.start(which);
   for (const int p : which) {
-    seen_[p] = twos_[two_of_[p]].closed;
+    seen_[p] = body_pairs_[body_pair_of_[p]].closed;
     open_until_[p] = seen_[p] + coupling_.pairs()[p].gap;
   }
 }
@@ -164,19 +166,19 @@ void RigidIsland::take_gaps(std::span<const int> which) {
 void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
   const std::span<MemberPair> pairs = coupling_.pairs();
   which_.clear();
-  for (Two& two : twos_) {
-    two.near.clear();
-    two.ahead = h > 0 ? coming(two, state, h) : 0;
-    two.least_unseen = two.least;
-    if (two.least > two.closed + two.ahead) continue;
-    two.least_unseen = std::numeric_limits<double>::infinity();
-    for (const int p : two.pairs) {
-      if (open_until_[p] > two.closed + two.ahead) {
-        two.least_unseen = std::min(two.least_unseen, open_until_[p]);
+  for (BodyPair& both : body_pairs_) {
+    both.near.clear();
+    both.ahead = h > 0 ? coming(both, state, h) : 0;
+    both.least_unseen = both.least;
+    if (both.least > both.closed + both.ahead) continue;
+    both.least_unseen = std::numeric_limits<double>::infinity();
+    for (const int p : both.pairs) {
+      if (open_until_[p] > both.closed + both.ahead) {
+        both.least_unseen = std::min(both.least_unseen, open_until_[p]);
         continue;
       }
       MemberPair& pair = pairs[p];
-      pair.ahead = two.ahead;
+      pair.ahead = both.ahead;
       pair.gap = 0;
       for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = start_[pair.node[k]];
       which_.push_back(p);
@@ -187,7 +189,7 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
   found_.assign(pairs.size(), false);
   for (const auto* list : {&now_.touches, &now_.ahead})
     for (const MemberTouch& touch : *list) {
-      twos_[two_of_[touch.pair]].near.push_back(&touch);
+      body_pairs_[body_pair_of_[touch.pair]].near.push_back(&touch);
       found_[touch.pair] = true;
     }
   find_bounds();
@@ -197,35 +199,35 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
 void RigidIsland::find_bounds() {
   stale_.clear();
   for (const int p : which_) {
-    const Two& two = twos_[two_of_[p]];
+    const BodyPair& both = body_pairs_[body_pair_of_[p]];
     if (found_[p])
-      open_until_[p] = seen_[p] = two.closed;
-    else if (two.closed > seen_[p] + k_stale)
+      open_until_[p] = seen_[p] = both.closed;
+    else if (both.closed > seen_[p] + k_stale)
       stale_.push_back(p);
   }
   take_gaps(stale_);
-  for (Two& two : twos_) two.least = two.least_unseen;
+  for (BodyPair& both : body_pairs_) both.least = both.least_unseen;
   for (const int p : which_) {
-    double& least = twos_[two_of_[p]].least;
+    double& least = body_pairs_[body_pair_of_[p]].least;
     least = std::min(least, open_until_[p]);
   }
 }
 
-RigidIsland::Together& RigidIsland::together(const std::vector<int>& bodies) {
+RigidIsland::TouchingBodies& RigidIsland::together(const std::vector<int>& bodies) {
   const auto known = ranges::find_if(sets_, [&](const auto& set) { return set->bodies == bodies; });
   if (known != sets_.end()) return **known;
   if (sets_.size() >= k_sets) sets_.erase(sets_.begin());
   std::vector<std::pair<int, int>> coupled;
-  for (const Two& two : twos_)
-    if (two.second >= 0 && ranges::binary_search(bodies, two.first) &&
-        ranges::binary_search(bodies, two.second))
-      coupled.emplace_back(place_[two.first], place_[two.second]);
-  return *sets_.emplace_back(std::make_unique<Together>(
-      Together{bodies, BlockLu(static_cast<int>(bodies.size()), coupled), {}, {}}));
+  for (const BodyPair& both : body_pairs_)
+    if (both.second >= 0 && ranges::binary_search(bodies, both.first) &&
+        ranges::binary_search(bodies, both.second))
+      coupled.emplace_back(place_[both.first], place_[both.second]);
+  return *sets_.emplace_back(std::make_unique<TouchingBodies>(
+      TouchingBodies{bodies, BlockLu(static_cast<int>(bodies.size()), coupled), {}, {}}));
 }
 
 // With their contacts with planes.
-void RigidIsland::add_bodies(const StepSpan& span, const State& state, Together& set) {
+void RigidIsland::add_bodies(const StepSpan& span, const State& state, TouchingBodies& set) {
   const double h = span.h;
   const Vec3 field = span.parameters.gravity - (span.start.floor + span.end.floor) / 2;
   for (const int b : set.bodies) {
@@ -251,14 +253,14 @@ void RigidIsland::add_bodies(const StepSpan& span, const State& state, Together&
   }
 }
 
-void RigidIsland::add_contacts(const PreparedLaw& law, const Two& two, Together& set) {
-  for (const MemberTouch* touch : two.near) {
+void RigidIsland::add_contacts(const PreparedLaw& law, const BodyPair& both, TouchingBodies& set) {
+  for (const MemberTouch* touch : both.near) {
     const MemberPair& pair = coupling_.pairs()[touch->pair];
     const ContactInput& in = touch->input;
     const double alpha = touch->weight * law.alpha;
     const auto [k, c] = StickSpring(alpha, in.L, in.mass);
     // the pair's first part may be of either body
-    const bool same = coupling_.bodies_of(pair)[0] == two.first;
+    const bool same = coupling_.bodies_of(pair)[0] == both.first;
     const double sign = same ? 1 : -1;
     const NearContact contact{
         sign * in.normal,
@@ -271,7 +273,7 @@ void RigidIsland::add_contacts(const PreparedLaw& law, const Two& two, Together&
         c};
     set.contacts.emplace_back(
         touch,
-        set.impulses.add(place_[two.first], two.second < 0 ? -1 : place_[two.second], 1, true, contact));
+        set.impulses.add(place_[both.first], both.second < 0 ? -1 : place_[both.second], 1, true, contact));
   }
 }
 
@@ -280,34 +282,34 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
   const PreparedLaw& law = span.end.law;
   const int count = static_cast<int>(bodies_.size());
   DisjointSets joined(count);
-  for (const Two& two : twos_)
-    if (!two.near.empty() && two.second >= 0) joined.join(two.first, two.second);
+  for (const BodyPair& both : body_pairs_)
+    if (!both.near.empty() && both.second >= 0) joined.join(both.first, both.second);
   std::vector<std::vector<int>> sets(count);
   for (int b = 0; b < count; ++b) {
     std::vector<int>& own = sets[joined.first_of(b)];
     place_[b] = static_cast<int>(own.size());
     own.push_back(b);
   }
-  std::vector<Together*> set_of(count);
+  std::vector<TouchingBodies*> set_of(count);
   velocity_.resize(count);
   work_ = {};
   blends_ = coupling_.blend_loads(now_, coupling_.pairs());
   used_.clear();
   for (const std::vector<int>& bodies : sets) {
     if (bodies.empty()) continue;
-    Together& set = together(bodies);
+    TouchingBodies& set = together(bodies);
     used_.push_back(&set);
     set.contacts.clear();
     set.impulses.begin(law, span.h);
     add_bodies(span, state, set);
     for (const int b : bodies) set_of[b] = &set;
   }
-  for (const Two& two : twos_)
-    if (!two.near.empty()) add_contacts(law, two, *set_of[two.first]);
+  for (const BodyPair& both : body_pairs_)
+    if (!both.near.empty()) add_contacts(law, both, *set_of[both.first]);
   double fall = std::numeric_limits<double>::infinity();
   for (const ModelBody& b : bodies_) fall = std::min(fall, fall_speed(span.parameters, *b.body));
   bounces_ = false;
-  for (Together* set : used_) {
+  for (TouchingBodies* set : used_) {
     if (set->impulses.strikes(k_bounce_speed * fall)) {
       bounces_ = true;
       if (span.h * set->impulses.frequency() > k_bounce) return false;
@@ -340,24 +342,23 @@ void RigidIsland::move(double h, State& state, StepEnergy& booked) {
       return 0.5 * dot(omega, inertia * omega);
     };
     const double before = energy();
-    body->move_freely(h, s);
+    body->drift(h, s);
     booked.numerical += before - energy();
   }
   go_to(state);
 }
 
-// By how much more than was looked at bodies came nearer, where something may have met unseen, m.
-double RigidIsland::missed() const {
-  double most = 0;
-  for (const Two& two : twos_) most = std::max(most, two.closed - two.least_unseen);
-  return most;
+// Whether bodies came nearer than was looked at, so that something may have met unseen.
+bool RigidIsland::missed() const {
+  return ranges::any_of(body_pairs_, [](const BodyPair& of) { return of.closed > of.least_unseen; });
 }
 
 // Whether a pair went through each other in the newest move.
 bool RigidIsland::passed() const {
   for (const int p : which_) {
     const MemberPair& pair = coupling_.pairs()[p];
-    if (twos_[two_of_[p]].way > pair.L / 2 && moved_unseen(pair, from_, coupling_.position())) return true;
+    if (body_pairs_[body_pair_of_[p]].way > pair.L / 2 && moved_unseen(pair, from_, coupling_.position()))
+      return true;
   }
   for (const MemberTouch& touch : now_.touches) {
     if (touch.input.depth < k_deep) continue;
@@ -374,9 +375,10 @@ bool RigidIsland::passed() const {
 void RigidIsland::take_sticks() {
   const std::span<MemberPair> pairs = coupling_.pairs();
   for (const int p : which_) pairs[p].stick.fill(Vec3::Zero());
-  for (const Together* set : used_)
+  for (const TouchingBodies* set : used_)
     for (const auto& [touch, number] : set->contacts) {
-      const bool same = coupling_.bodies_of(pairs[touch->pair])[0] == twos_[two_of_[touch->pair]].first;
+      const bool same =
+          coupling_.bodies_of(pairs[touch->pair])[0] == body_pairs_[body_pair_of_[touch->pair]].first;
       pairs[touch->pair].stick[touch->place] = (same ? 1 : -1) * set->impulses.stick(number);
     }
 }
@@ -442,7 +444,7 @@ StepStatus::Kind RigidIsland::advance(const StepSpan& span, State& next, MemberS
     s.angular_velocity = unpacked(transposed_times(turned(s), velocity_[b].angular));
   }
   move(span.h / 2, next, booked);
-  if (missed() > 0) return StepStatus::Kind::passed_through;
+  if (missed()) return StepStatus::Kind::passed_through;
   take_sticks();
   std::swap(last_, now_);
   start_ = coupling_.position();
@@ -463,7 +465,7 @@ void RigidIsland::finish(const StepSpan& span, State& next, MemberSticks& sticks
   const std::vector<BodyVelocity>& loads = coupling_.loads(now_, coupling_.pairs());
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     BodyState& s = next.bodies[bodies_[b].index];
-    bodies_[b].body->finish_impulse(span.end.law, span.parameters.gravity - span.end.floor, s, next.stick);
+    bodies_[b].body->finish_substep(span.end.law, span.parameters.gravity - span.end.floor, s, next.stick);
     add_load(loads[b], s);
     here_[b].substep = s.substep = wanted;
   }

@@ -47,8 +47,8 @@ class RigidIsland {
   void forget() { law_.reset(); }
 
  private:
-  // Two bodies whose members may touch; `second` -1: floors and walls of members.
-  struct Two {
+  // BodyPair bodies whose members may touch; `second` -1: floors and walls of members.
+  struct BodyPair {
     int first, second;
     std::vector<int> pairs;
     // Bounds of the way by which they have come nearer, m: so far, and in the newest step.
@@ -59,7 +59,7 @@ class RigidIsland {
     std::vector<const MemberTouch*> near;  // what touches, or may
   };
   // Bodies that touch each other, and what is kept for them from step to step.
-  struct Together {
+  struct TouchingBodies {
     std::vector<int> bodies;
     BlockLu matrix;
     ContactImpulses impulses;
@@ -76,19 +76,19 @@ class RigidIsland {
   static Known known_of(const BodyState& s) {
     return {s.position, s.velocity, s.angular_velocity, s.rotation, s.substep};
   }
-  double coming(const Two& two, const State& state, double h) const;
-  double came(const Two& two, const std::vector<Known>& there) const;
+  double coming(const BodyPair& both, const State& state, double h) const;
+  double came(const BodyPair& both, const std::vector<Known>& there) const;
   void start(const State& state, const MemberSticks& sticks);
   void go_to(const State& state);
   void look(const ContactLaw& law, const State& state, double h);
   void find_bounds();
   void take_gaps(std::span<const int> which);
-  Together& together(const std::vector<int>& bodies);
+  TouchingBodies& together(const std::vector<int>& bodies);
   bool solve(const StepSpan& span, const State& state);
-  void add_bodies(const StepSpan& span, const State& state, Together& set);
-  void add_contacts(const PreparedLaw& law, const Two& two, Together& set);
+  void add_bodies(const StepSpan& span, const State& state, TouchingBodies& set);
+  void add_contacts(const PreparedLaw& law, const BodyPair& both, TouchingBodies& set);
   void move(double h, State& state, StepEnergy& booked);
-  double missed() const;
+  bool missed() const;
   bool passed() const;
   void take_sticks();
   struct Held {
@@ -101,11 +101,11 @@ class RigidIsland {
 
   const std::vector<ModelBody>& bodies_;
   MemberCoupling& coupling_;
-  std::vector<Two> twos_;
-  std::vector<int> two_of_;         // per pair
-  std::vector<double> open_until_;  // m, per pair: it is open while Two::closed is less
-  std::vector<double> seen_;        // m, per pair: Two::closed when that was found
-  std::vector<std::unique_ptr<Together>> sets_;
+  std::vector<BodyPair> body_pairs_;
+  std::vector<int> body_pair_of_;   // per pair
+  std::vector<double> open_until_;  // m, per pair: it is open while BodyPair::closed is less
+  std::vector<double> seen_;        // m, per pair: BodyPair::closed when that was found
+  std::vector<std::unique_ptr<TouchingBodies>> sets_;
   std::vector<std::vector<BodyContacts::TouchBuffer>> buffers_;  // per body
   // What is known, where and with what.
   std::vector<Known> here_;  // per body
@@ -116,7 +116,7 @@ class RigidIsland {
   MemberContacts last_;              // where bodies were looked at before
   std::vector<Vec3> start_, from_;   // m, per node of the coupling: of stick springs; before the newest move
   std::vector<BodyState> start_of_;  // per body
-  std::vector<Together*> used_;
+  std::vector<TouchingBodies*> used_;
   std::vector<ContactImpulses::Velocity> velocity_;  // per body
   std::vector<BodyVelocity> blends_;                 // per body, what MemberContacts::blends do: held
   ContactImpulses::Work work_;

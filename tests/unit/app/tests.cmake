@@ -29,6 +29,7 @@ add_executable(app_test
   ${CMAKE_CURRENT_LIST_DIR}/furnish/snap_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/gltf/key_frames_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/live_recorder_test.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/live/player_branches_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/live/player_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/page/block_map_test.cpp
   ${CMAKE_CURRENT_LIST_DIR}/page/page_test.cpp
