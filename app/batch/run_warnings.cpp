@@ -111,10 +111,11 @@ void warn_of_stress(const Run& run, Warnings& list) {
       stiffest = std::max(stiffest, material.young);
     }
     if (const double ratio = bodies[b].peak_yield_ratio.value_or(0); ratio > k_yielded)
-      list.push_back(
-          fmt::format("the stress in body \"{}\", {:.4g} MPa, passed yield {:.3g} times while the body was "
-                      "elastic: no steel bears it; want = [\"stress\"], or model = \"frame\", lets it yield",
-                      body.name, 1e-6 * bodies[b].peak_stress, ratio));
+      list.push_back(fmt::format(
+          "the stress in body \"{}\", {:.4g} MPa, is beyond yield while the body was elastic, a section "
+          "bore {:.3g} of its strength: no steel does; model = \"frame\", or \"auto\" where stresses are "
+          "wanted, lets it yield",
+          body.name, 1e-6 * bodies[b].peak_stress, ratio));
     if (!yields && bodies[b].peak_stress > k_elastic_strain * stiffest)
       list.push_back(fmt::format(
           "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
@@ -187,18 +188,26 @@ void warn_of_energy(const Run& run, Warnings& list) {
 
 }  // namespace
 
-void warn_of_shakes(const std::vector<Shake>& shakes, std::vector<std::string>& list) {
-  for (std::size_t k = 0; k < shakes.size(); ++k)
+void warn_of_shakes(const std::vector<Shake>& shakes, double output_rate, std::vector<std::string>& list) {
+  constexpr double k_rows = 4;  // in a period, of which a curve is drawn
+  for (std::size_t k = 0; k < shakes.size(); ++k) {
+    if (traits(shakes[k].kind).has_frequency && k_rows * shakes[k].frequency > output_rate)
+      list.push_back(
+          fmt::format("shake {} of {:.4g} Hz is too fast for rows at {:.4g} Hz: the floor is drawn and "
+                      "exported as another "
+                      "motion; run.output_rate = \"{:.4g} Hz\" follows it",
+                      k + 1, shakes[k].frequency, output_rate, 2 * k_rows * shakes[k].frequency));
     if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
       list.push_back(
           fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
                       k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
+  }
 }
 
 std::vector<std::string> run_warnings(const Run& run) {
   Warnings list;
   warn_of_depth(run, list);
-  warn_of_shakes(run.parameters().shakes, list);
+  warn_of_shakes(run.parameters().shakes, run.setup().run.output_rate, list);
   warn_of_stress(run, list);
   warn_of_pieces(run, list);
   warn_of_instability(run, list);

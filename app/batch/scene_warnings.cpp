@@ -185,7 +185,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_falls(setup, start, list);
   for (std::string words : {soft_contact_warning(setup, setup.parameters), bending_warning(setup)})
     if (!words.empty()) list.push_back(std::move(words));
-  warn_of_shakes(setup.parameters.shakes, list);
+  warn_of_shakes(setup.parameters.shakes, setup.run.output_rate, list);
   return list;
 }
 

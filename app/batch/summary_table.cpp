@@ -24,6 +24,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr double k_least_error = 1e-4;  // of a model, that is told: those of steps are greater
+
 std::string text(const ordered_json& value, const char* format) {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
@@ -117,12 +119,15 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
-  const std::string bounds = may_strike ? " until it strikes something, from which a frame springs back"
-                             : body["impacts"].get<int>() > 0
-                                 ? " until it first lands, however lightly; each landing enlarges that"
-                             : !body["first_beyond_critical_s"].is_null() ? " until it lands"
-                                                                          : "";
-  return fmt::format("; off from a frame by about {:.2g} %{}", 100 * estimate.get<double>(), bounds);
+  const std::string bounds =
+      may_strike                       ? " until it strikes something, from which a frame springs back"
+      : body["impacts"].get<int>() > 0 ? " until it first lands, however lightly, or leans by half of its "
+                                         "critical angle; both enlarge that"
+      : !body["first_beyond_critical_s"].is_null() ? " until it leans by half of its critical angle"
+                                                   : "";
+  const double error = estimate.get<double>();
+  return error < k_least_error ? "; off from a frame by less than 0.1 %" + bounds
+                               : fmt::format("; off from a frame by about {:.2g} %{}", 100 * error, bounds);
 }
 
 // Of the model that a body begins with.
@@ -259,6 +264,9 @@ std::string fixing_line(const ordered_json& a) {
 }
 
 std::string wedge_line(const ordered_json& w) {
+  if (w["nodes"].empty())
+    return fmt::format("fixing {}: stopper of {}, not in place", w["name"].get<std::string>(),
+                       w["body"].get<std::string>());
   std::string nodes;
   for (const auto& node : w["nodes"])
     nodes += (nodes.empty() ? "" : " and ") + std::to_string(node.get<int>());

@@ -91,8 +91,8 @@ std::string info_table(const ordered_json& d) {
   }
   for (const auto& a : d["anchors"])
     out += fmt::format("anchor {}: {} of {:.4g} kN/m on {}, {}{}\n", a["name"].get<std::string>(),
-                       a["type"].get<std::string>(), 1e-3 * a["stiffness_N_m"].get<double>(),
-                       a["body"].get<std::string>(),
+                       a[a["fixing"].is_null() ? "type" : "fixing"].get<std::string>(),
+                       1e-3 * a["stiffness_N_m"].get<double>(), a["body"].get<std::string>(),
                        a["strength_N"].is_null()
                            ? "never breaks"
                            : fmt::format("breaks above {:.4g} kN", 1e-3 * a["strength_N"].get<double>()),

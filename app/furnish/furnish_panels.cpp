@@ -260,7 +260,10 @@ void FurnishView::draw_fixings() {
   for (std::size_t k = 0; fixings && k < fixings->items.size(); ++k) {
     const io::Node& one = fixings->items[k].value;
     ImGui::AlignTextToFramePadding();
-    const std::string words = say(fw::k_fixing_line, fw::in_words(fw::k_fixing_kinds, one.find("kind")->text),
+    const io::Node* const on = one.find("on");
+    const bool in_place = on == nullptr || on->boolean;
+    const std::string words = say(in_place ? fw::k_fixing_line : fw::k_fixing_off_line,
+                                  fw::in_words(fw::k_fixing_kinds, one.find("kind")->text),
                                   one.find("body")->text, one.find("to")->text);
     const float room = ImGui::GetContentRegionAvail().x - 1.6f * ImGui::GetFrameHeight();
     ImGui::TextUnformatted(render::shortened(*ImGui::GetFont(), words, room).c_str());

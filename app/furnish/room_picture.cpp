@@ -36,7 +36,8 @@ io::FrameRow start_row(const Setup& setup) {
     row.body[b].qw = turn.w(), row.body[b].qx = turn.x(), row.body[b].qy = turn.y(),
     row.body[b].qz = turn.z();
   }
-  for (io::AnchorNumbers& anchor : row.anchor) anchor.state = io::k_anchor_slack;
+  for (std::size_t k = 0; k < row.anchor.size(); ++k)
+    row.anchor[k].state = setup.parameters.anchors[k] ? io::k_anchor_slack : io::k_anchor_away;
   return row;
 }
 

@@ -85,7 +85,7 @@ inline constexpr Named k_all[] = {
     {"map_falls", {"overturns", "転倒"}},
     {"map_rocks", {"rocks, stays", "ロッキング、転倒せず"}},
     {"map_stands", {"stands", "浮き上がらず"}},
-    {"map_here", {"this shake", "この揺れ"}},
+    {"map_here", {"this shake; cells are of their middles", "この揺れ（各マスは中央の値）"}},
     {"map_piece", {"Map of", "転倒図の対象"}},
     {"map_none", {"There is no map: {0}", "転倒図なし：{0}"}},
     {"hint",

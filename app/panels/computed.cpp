@@ -40,7 +40,8 @@ std::string computed_in_words(const Player& player, std::size_t body) {
   const std::optional<io::FrameRow> now = player.row();
   if (!now) return "";
   const auto level = static_cast<ModelLevel>(now->level[body]);
-  LevelReason reason = LevelReason::asked;
+  LevelReason reason =
+      base_level(player.scene().setup.model, player.parameters(), static_cast<int>(body)).reason;
   for (const io::RecordedEvent& event : player.events())
     if (event.event.kind == Event::Kind::model && event.event.body == static_cast<int>(body) &&
         event.time <= now->time)

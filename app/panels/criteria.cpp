@@ -23,6 +23,8 @@ const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
 
 namespace {
 
+constexpr double k_as_rigid = 0.99;  // of the push that it withstands on rigid contacts
+
 /// Towards the nearer edge across the first shake of a body that stands freely; none: it has none.
 std::optional<study::Standing> nearest_standing(const Model& model, const Parameters& parameters, int body) {
   if (!study::why_no_block(model, body).empty()) return std::nullopt;
@@ -45,21 +47,26 @@ std::optional<CriteriaLimits> limits_of(const Player& player, int body) {
   const bool planar = row && row->level[static_cast<std::size_t>(body)] ==
                                  static_cast<std::uint8_t>(ModelLevel::planar);  // on a hard floor
   const double rigid = study::west_acceleration(standing), base = standing.base;
-  const auto soft = planar ? std::nullopt : study::soft_limit(standing, parameters.contact);
-  if (soft) standing.base *= *soft / rigid;
+  const double share = study::tipping_limit(standing, parameters.contact) / standing.rigid_limit();
+  if (!planar && share < k_as_rigid) standing.base *= share;
   return CriteriaLimits{study::west_acceleration(standing), rigid, study::ishiyama_velocity(standing), base,
                         standing.height};
 }
 
 bool has_limits(const Model& model, const Parameters& parameters, int body) {
   const auto standing = nearest_standing(model, parameters, body);
-  return standing && !study::slides_first(model, parameters, body, *standing);
+  return standing && !study::slides_first(model, parameters, body, standing->rigid_limit());
 }
 
 std::string slides_in_words(const Model& model, const Parameters& parameters, int body) {
   const auto standing = nearest_standing(model, parameters, body);
-  if (!standing || !study::slides_first(model, parameters, body, *standing)) return "";
+  if (!standing || !study::slides_first(model, parameters, body, standing->rigid_limit())) return "";
   return say(k_slides_first, model.bodies[static_cast<std::size_t>(body)].name, standing->rigid_limit());
+}
+
+const Phrase& why_no_limits(const Model& model, const Parameters& parameters, int body) {
+  if (!study::why_no_block(model, body).empty()) return k_stands_not_freely;
+  return nearest_standing(model, parameters, body) ? k_slides_before : k_shaken_askew;
 }
 
 std::string held_in_words(const Player& player, int body) {
@@ -73,7 +80,7 @@ std::string held_in_words(const Player& player, int body) {
       return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, anchor.name);
   }
   for (const Wedge& wedge : player.scene().setup.wedges)
-    if (wedge.body == body)
+    if (wedge.in_place() && wedge.body == body)
       return say(k_is_leaned, model.bodies[static_cast<std::size_t>(body)].name, wedge.name);
   return "";
 }

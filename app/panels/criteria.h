@@ -32,6 +32,9 @@ std::optional<CriteriaLimits> limits_of(const Player& player, int body);
 /// k_stays, k_rocks or k_may_overturn.
 const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& shake);
 
+/// Why a body has none: k_stands_not_freely, k_shaken_askew or k_slides_before.
+const Phrase& why_no_limits(const Model& model, const Parameters& parameters, int body);
+
 /// That a body with such an edge slides before it lifts. Empty: it does not.
 std::string slides_in_words(const Model& model, const Parameters& parameters, int body);
 

@@ -43,7 +43,8 @@ std::span<const Demo> demos() {
 
 bool can_shake_as_sine(const Player& player) {
   const auto& shakes = player.parameters().shakes;
-  return player.can_edit() && !shakes.empty() && traits(shakes.front().kind).has_amplitude;
+  return player.can_edit() && !shakes.empty() && !shakes.front().building &&
+         traits(shakes.front().kind).has_amplitude;
 }
 
 void shake_as_sine(Player& player, double frequency, double amplitude) {

@@ -97,6 +97,16 @@ void note_place(const ShakePlace& place, std::vector<ShakePlace>& path) {
   if (path.size() > k_path) path.erase(path.begin());
 }
 
+/// No body of the scene has criteria.
+std::string why_none(const Model& model, const Parameters& parameters) {
+  bool askew = false;
+  for (int b = 0; b < model.furniture_total(); ++b) {
+    if (std::string words = slides_in_words(model, parameters, b); !words.empty()) return words;
+    askew = askew || &why_no_limits(model, parameters, b) == &k_shaken_askew;
+  }
+  return say(askew ? k_no_edge_across : k_no_standing_body);
+}
+
 void draw_criteria(const Player& player, TeachingState& state) {
   const Model& model = player.scene().setup.model;
   const auto& shakes = player.parameters().shakes;
@@ -112,14 +122,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
       if (has_limits(model, parameters, b)) state.body = b;
   }
   if (!state.body) {
-    bool told = false;
-    for (int b = 0; b < furniture; ++b)
-      if (const std::string words = slides_in_words(model, parameters, b); !words.empty()) {
-        ImGui::TextWrapped("%s", words.c_str());
-        told = true;
-        break;
-      }
-    if (!told) ImGui::TextWrapped("%s", say(k_no_standing_body).c_str());
+    ImGui::TextWrapped("%s", why_none(model, parameters).c_str());
     return;
   }
   ImGui::AlignTextToFramePadding();
@@ -130,10 +133,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
     for (int b = 0; b < furniture; ++b) {
       const std::string& name = model.bodies[static_cast<std::size_t>(b)].name;
       if (!has_limits(model, parameters, b))
-        ImGui::TextDisabled(
-            "%s",
-            say(slides_in_words(model, parameters, b).empty() ? k_stands_not_freely : k_slides_before, name)
-                .c_str());
+        ImGui::TextDisabled("%s", say(why_no_limits(model, parameters, b), name).c_str());
       else if (list_entry(name, b == *state.body))
         state.body = b;
     }

@@ -46,10 +46,6 @@ struct Inspected {
       }
     return {least, most};
   }
-  double run_peak(const Subject& subject, std::size_t k) const {
-    const auto [least, most] = run_range(subject, k);
-    return std::max(-least, most);
-  }
 };
 
 bool is_plotted(const Inspection& inspection, const PlottedValue& plot) {
@@ -195,6 +191,10 @@ void draw_integration_points(const Inspected& at, const Member& member) {
   ImGui::TextWrapped("%s", say(k_s_of_elements, places).c_str());
 }
 
+bool has_value(const std::vector<float>& samples) {
+  return std::ranges::any_of(samples, [](float sample) { return std::isfinite(sample); });
+}
+
 void draw_history(const Inspected& at, const Subject& subject, std::size_t value) {
   const std::vector<float>& samples = at.histories.of(at.player, subject, value);
   const SubjectValue& what = values_of(subject.kind)[value];
@@ -208,7 +208,8 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
   list.AddRectFilled(low, {low.x + width, low.y + height}, theme().sheet, 3);
   list.AddRect(low, {low.x + width, low.y + height}, theme().frame, 3);
   add_text(list, low.x + 5, low.y + 3, theme().text,
-           say(k_over_run, say(what.name), value_text(std::max(-least, most)), what.unit));
+           say(k_over_run, say(what.name), has_value(samples) ? value_text(std::max(-least, most)) : "-",
+               what.unit));
   if (most > least)
     add_curve(
         list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, 1.4f);

@@ -60,6 +60,12 @@ const study::OverturnPoint& point(const OverturnFound& found, int i, int j) {
   return found.map.points[static_cast<std::size_t>(j * found.plan->x.count() + i)];
 }
 
+/// The floor's shake was computed from that of a building's ground.
+bool moves_ground(const Player& player) {
+  const std::vector<Shake>& shakes = player.parameters().shakes;
+  return !shakes.empty() && shakes.front().building != nullptr;
+}
+
 /// Shakes from now on as at this point; one thing to undo.
 void load(Player& player, const study::OverturnPlan& plan, int i, int j, std::string& refused) {
   player.begin_edit();
@@ -159,9 +165,13 @@ void handle_mouse(Player& player, const LogChart& chart, const OverturnFound& fo
   if (i < 0 || j < 0) return;
   const float gap = 4 * ImGui::GetTextLineHeight();
   ImGui::SetNextWindowPos({chart.left - gap, at.y}, ImGuiCond_Always, {1, 0.5f});  // beside the cells
+  const bool of_ground = moves_ground(player), can = player.can_edit() && !of_ground;
   ImGui::SetTooltip("%s\n%s", cell_in_words(found, i, j).c_str(),
-                    say(player.can_edit() ? k_map_click : k_map_no_click).c_str());
-  if (ImGui::IsMouseClicked(0) && player.can_edit()) load(player, *found.plan, i, j, refused);
+                    say(can         ? k_map_click
+                        : of_ground ? k_map_of_ground
+                                    : k_map_no_click)
+                        .c_str());
+  if (ImGui::IsMouseClicked(0) && can) load(player, *found.plan, i, j, refused);
 }
 
 /// The way for the keyboard: to the cells beside that of the present shake.
@@ -176,7 +186,7 @@ void draw_steps(Player& player, const OverturnFound& found, std::string& refused
   const auto step = [&](const char* name, ImGuiDir direction, int to_i, int to_j) {
     const bool there = to_i >= 0 && to_i < plan.x.count() && to_j >= 0 && to_j < plan.y.count();
     ImGui::SameLine();
-    ImGui::BeginDisabled(!there || !player.can_edit());
+    ImGui::BeginDisabled(!there || !player.can_edit() || moves_ground(player));
     if (ImGui::ArrowButton(name, direction)) load(player, plan, to_i, to_j, refused);
     ImGui::EndDisabled();
   };
@@ -295,7 +305,9 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
                (state.soft_limit ? say(k_full_stop) + " " + say(k_map_soft, *state.soft_limit / k_gal) : ""))
                   .c_str());
   else if (!found->map.criteria.why_not.empty())  // else they are not there yet
-    ImGui::TextWrapped("%s", say(k_map_no_lines).c_str());
+    ImGui::TextWrapped(
+        "%s", say(plan.scene.setup.parameters.shakes.front().building ? k_building_between : k_map_no_lines)
+                  .c_str());
   ImGui::TextWrapped("%s", present_in_words(*found, player.parameters()).c_str());
   draw_steps(player, *found, refused);
   if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of))

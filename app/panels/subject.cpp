@@ -69,7 +69,7 @@ double slide_value(const FrameContext& now, std::size_t index) {
 double angular_velocity(const FrameContext& now, std::size_t index) {
   const io::FrameRow& from = now.before ? *now.before : now.row;
   const io::FrameRow& to = now.after ? *now.after : now.row;
-  if (!(to.time > from.time)) return k_no_value;
+  if (!now.moves || !(to.time > from.time)) return k_no_value;
   return log_quaternion(to.body[index].rotation() * from.body[index].rotation().conjugate()).norm() /
          (to.time - from.time);
 }
@@ -140,7 +140,7 @@ constexpr SubjectValue k_body_values[] = {{window_words::k_tilt, "°", tilt_valu
                                           {window_words::k_kinetic, "J", kinetic_value},
                                           {window_words::k_left_to_overturn, "J", margin_value},
                                           {window_words::k_share_left, "%", margin_share},
-                                          {window_words::k_elastic_displacement, "mm", displacement_value}};
+                                          {window_words::k_own_deformation, "mm", displacement_value}};
 constexpr SubjectValue k_anchor_values[] = {
     {window_words::k_force, "N", anchor_value<&io::AnchorNumbers::tension>},
     {window_words::k_stretch, "mm", stretch_value},
@@ -293,6 +293,7 @@ FrameContext frame_context(const Player& player, const io::FrameRow& row) {
   const auto next = at != way.end() && (*at)->time == row.time ? at + 1 : at;
   if (next != way.end()) now.after = next->get();
   now.anchor_peaks = player.anchor_peaks();
+  now.moves = player.scene().setup.run.analysis == Analysis::dynamic;
   return now;
 }
 

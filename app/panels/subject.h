@@ -39,6 +39,7 @@ struct FrameContext {
   const io::FrameRow* before = nullptr;
   const io::FrameRow* after = nullptr;
   std::span<const double> anchor_peaks = {};  ///< N, Player::anchor_peaks()
+  bool moves = true;                          ///< false: of a static run, in which nothing has a velocity
 };
 /// `row` between its neighbours among the recorded frames.
 FrameContext frame_context(const Player& player, const io::FrameRow& row);

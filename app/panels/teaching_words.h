@@ -10,6 +10,11 @@ inline constexpr Phrase k_body{"body", "家具"};
 inline constexpr Phrase k_no_standing_body{
     "No body here stands freely on the floor, so the criteria say nothing.",
     "床に自立する家具がないため、判定基準は適用できません。"};
+inline constexpr Phrase k_no_edge_across{
+    "No body that stands freely here has an edge square to the shake, so the criteria say nothing.",
+    "加振方向に直交する底辺を持つ自立家具がないため、判定基準は適用できません。"};
+inline constexpr Phrase k_shaken_askew{"{0} (no edge is square to the shake)",
+                                       "{0}（加振が底辺に直交しない）"};
 inline constexpr Phrase k_stands_not_freely{"{0} (held, on another, or bears one)",
                                             "{0}（固定・家具の上・家具を載せている）"};
 inline constexpr Phrase k_slides_before{"{0} (slides before it lifts)", "{0}（浮き上がる前に滑る）"};
@@ -77,8 +82,9 @@ inline constexpr Phrase k_full_stop{".", "。"};
 inline constexpr Phrase k_long_period{"long period, small acceleration", "長周期・小さい加速度"};
 inline constexpr Phrase k_short_period{"short period, large acceleration", "短周期・大きい加速度"};
 inline constexpr Phrase k_preset_about{"{0:g} Hz, {1:g} gal, from now on", "現時刻から {0:g} Hz、{1:g} gal"};
-inline constexpr Phrase k_sine_only{"Only where the floor can shake as a sine, at the newest instant",
-                                    "正弦波で加振できるシーンの、最新の時刻でのみ使えます"};
+inline constexpr Phrase k_sine_only{
+    "Only where the floor itself, not the ground of a building, can shake as a sine, at the newest instant",
+    "床自体を正弦波で加振できるシーン（建物なし）の、最新の時刻でのみ使えます"};
 
 // overturning map
 inline constexpr Phrase k_overturning_map{"Overturning map", "転倒マップ"};
@@ -117,6 +123,9 @@ inline constexpr Phrase k_map_outside{"The present shake is outside of the map."
 inline constexpr Phrase k_map_click{
     "A click shakes like this from now on; R, then Space runs it from the start.",
     "クリックすると現時刻からこの加振に変更。R の後 Space で最初から計算します。"};
+inline constexpr Phrase k_map_of_ground{
+    "The shake of a building's ground is set in the scene alone: the floor's was computed from it.",
+    "建物の地動はシーンでのみ設定できます（床の揺れは地動から計算済み）。"};
 inline constexpr Phrase k_map_no_click{"Only the newest instant can be shaken otherwise: End, or C.",
                                        "加振を変更できるのは最新の時刻だけです（End または C）。"};
 inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床に自立する {0}"};
@@ -124,10 +133,11 @@ inline constexpr Phrase k_map_soft{
     "They are for a rigid floor; on the soft contacts of this scene a steady push of {0:.4g} gal tips it.",
     "剛な床に対する値です。このシーンの柔らかい接触では {0:.4g} gal の一定の力で倒れます。"};
 inline constexpr Phrase k_map_no_lines{
-    "The criteria do not hold here (nothing stands freely, or it slides before it can lift), so the map has "
-    "no lines.",
-    "判定基準を適用できない（自立する家具がない、または浮き上がる前に滑る）ため、"
-    "線はありません。"};
+    "The criteria do not hold here, so the map has no lines: there are several shakes, or of what stands "
+    "freely "
+    "no edge is square to the shake, or it slides before it can lift, or nothing stands freely.",
+    "判定基準を適用できない（加振が複数、加振に直交する底辺がない、浮き上がる前に滑る、"
+    "または自立する家具がない）ため、線はありません。"};
 inline constexpr Phrase k_present{"now", "現在"};
 inline constexpr Phrase k_duration_axis{"duration, s", "継続時間 [s]"};
 inline constexpr Phrase k_one_cycle{"one cycle alone, exact", "1周期のみ（厳密解）"};

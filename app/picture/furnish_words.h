@@ -109,6 +109,7 @@ inline constexpr Phrase k_fixings{"Fixings", "固定具"};
 inline constexpr Phrase k_fixings_about{"Choose one, then click a piece and what it is held to.",
                                         "種類を選び、家具と取り付け先を順にクリックします。"};
 inline constexpr Phrase k_fixing_line{"{0}: {1} to {2}", "{0}：{1} → {2}"};
+inline constexpr Phrase k_fixing_off_line{"{0}: {1} to {2}, not in place", "{0}：{1} → {2}（取り外し）"};
 inline constexpr Phrase k_way_out{"Doors, people", "扉・人"};
 inline constexpr Phrase k_way_out_about{"The run then tells who is hit and whose way out is blocked.",
                                         "計算結果に、誰に当たるか、避難経路が塞がるかを表示します。"};

@@ -10,6 +10,7 @@
 #include "solver/contact/nearest_places.h"
 #include "solver/contact/panel_place.h"
 #include "solver/contact/proximity.h"
+#include "solver/math/disjoint_sets.h"
 
 namespace topple::app {
 namespace {
@@ -48,18 +49,33 @@ std::vector<TouchedPart> touched_parts(const Model& model, const io::FrameRow& r
   return out;
 }
 
-void join_nearest(std::vector<TouchedPart>& parts) {
+/// Between two parts, elements or panels that an element's end is over.
+double distance(const TouchedPart& a, const TouchedPart& b) {
+  if (a.corner.size() == 4) return distance(b, a);
+  if (b.corner.size() == 4) return std::min(distance(b, a.corner[0]), distance(b, a.corner[1]));
+  return nearest_points(a.corner[0], a.corner[1], b.corner[0], b.corner[1]).between.norm();
+}
+
+/// Parts of different bodies that are as near as those that touch, or else nearest.
+void join(const Model& model, std::vector<TouchedPart>& parts) {
+  constexpr double k_slack = 1 + 1e-3;  // places of rows are floats
+  const auto add = [&](std::size_t i, std::size_t j) {
+    parts[i].others.insert(j);
+    parts[j].others.insert(i);
+  };
+  const auto is_panel = [](const TouchedPart& part) { return part.corner.size() == 4; };
   for (std::size_t i = 0; i < parts.size(); ++i) {
     std::size_t nearest = i;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < parts.size(); ++j) {
-      if (parts[j].body == parts[i].body) continue;
-      const double away = distance(parts[j], parts[i].place);
+      if (parts[j].body == parts[i].body || (is_panel(parts[i]) && is_panel(parts[j]))) continue;
+      const double away =
+          distance(parts[i], parts[j]) / contact_length(model, {std::min(parts[i].part, parts[j].part),
+                                                                std::max(parts[i].part, parts[j].part)});
+      if (away < k_slack) add(i, j);
       if (away < least) least = away, nearest = j;
     }
-    if (nearest == i) continue;
-    parts[i].others.insert(nearest);
-    parts[nearest].others.insert(i);
+    if (nearest != i) add(i, nearest);
   }
 }
 
@@ -70,10 +86,25 @@ void each_pair(const std::vector<TouchedPart>& parts, F f) {
   const auto count = static_cast<int>(parts.size());
   std::vector<Eigen::Triplet<double>> sums;
   Eigen::MatrixX3d resultants(count, 3);
+  DisjointSets sets(count);
   for (int i = 0; i < count; ++i) {
     resultants.row(i) = parts[i].force;
     sums.emplace_back(i, i, parts[i].others.size());
-    for (const std::size_t j : parts[i].others) sums.emplace_back(i, static_cast<int>(j), -1);
+    for (const std::size_t j : parts[i].others) {
+      sums.emplace_back(i, static_cast<int>(j), -1);
+      sets.join(i, static_cast<int>(j));
+    }
+  }
+  // Of what touches each other they sum up to nothing but rounding and, between rows, interpolation.
+  Eigen::MatrixX3d surplus = Eigen::MatrixX3d::Zero(count, 3);
+  Eigen::VectorXd members = Eigen::VectorXd::Zero(count);
+  for (int i = 0; i < count; ++i) {
+    surplus.row(sets.first_of(i)) += resultants.row(i);
+    ++members[sets.first_of(i)];
+  }
+  for (int i = 0; i < count; ++i) {
+    const int first = sets.first_of(i);
+    resultants.row(i) -= surplus.row(first) / members[first];
   }
   Eigen::SparseMatrix<double> graph(count, count);
   graph.setFromTriplets(sums.begin(), sums.end());
@@ -120,7 +151,7 @@ std::vector<BodyTouch> touches(const Model& model, const io::FrameRow& row, std:
     add(all[c % planes], Vec3(on[0], on[1], on[2]), position(row, node), weight[c % planes]);
   }
   std::vector<TouchedPart> parts = touched_parts(model, row);
-  join_nearest(parts);
+  join(model, parts);
   each_pair(parts, [&](std::size_t i, std::size_t j, const Vec3& force) {
     const std::size_t other = planes + parts[j].body;
     if (parts[i].body == body) add(all[other], force, parts[i].place, weight[other]);

@@ -250,11 +250,11 @@ inline constexpr Phrase k_stresses_wanted_about{
 inline constexpr Phrase k_model{"model", "モデル"};
 inline constexpr Phrase k_anchor_broke{"{0} (broken)", "{0}（破断）"};
 inline constexpr Phrase k_anchor_about{
-    "ties {0} to the wall or floor. One that is put in place starts without force",
-    "{0} を壁または床に固定する。取り付けた時点の力は0"};
+    "ties {0} to the wall or floor. One that is put in place while it runs starts without force",
+    "{0} を壁または床に固定する。計算の途中で取り付けた時点の力は0"};
 inline constexpr Phrase k_anchor_between_about{
-    "ties {0} to {1}. One that is put in place starts without force",
-    "{0} を {1} に連結する。取り付けた時点の力は0"};
+    "ties {0} to {1}. One that is put in place while it runs starts without force",
+    "{0} を {1} に連結する。計算の途中で取り付けた時点の力は0"};
 inline constexpr Phrase k_direction_about{"of the acceleration, counter-clockwise from x (a cabinet's depth)",
                                           "加速度の方向。x軸（家具の奥行方向）から反時計回り"};
 // {0} is the scene reference's own line
@@ -326,8 +326,7 @@ inline constexpr Phrase k_yield_ratio{"yield ratio", "降伏比"};
 inline constexpr Phrase k_axial{"axial force, tension +", "軸力（引張+）"};
 inline constexpr Phrase k_moment{"bending moment", "曲げモーメント"};
 inline constexpr Phrase k_torsion{"torsional moment", "ねじりモーメント"};
-inline constexpr Phrase k_displacement{"elastic displacement from the best-fit pose",
-                                       "弾性変位（剛体運動を除く）"};
+inline constexpr Phrase k_displacement{"deformation from the best-fit pose", "変形（剛体運動を除く）"};
 inline constexpr Phrase k_covers_run{"covers 95 % of the run", "全時刻の95 %を含む範囲"};
 inline constexpr Phrase k_range_fixed{"fixed range", "固定範囲"};
 inline constexpr Phrase k_range_instant{"range of this instant", "この時刻の範囲"};
@@ -368,7 +367,7 @@ inline constexpr Phrase k_angular_velocity{"angular velocity", "角速度"};
 inline constexpr Phrase k_kinetic{"kinetic energy", "運動エネルギー"};
 inline constexpr Phrase k_left_to_overturn{"left to overturn", "転倒までの余裕"};
 inline constexpr Phrase k_share_left{"share left", "余裕の割合"};
-inline constexpr Phrase k_elastic_displacement{"elastic displacement", "弾性変位"};
+inline constexpr Phrase k_own_deformation{"deformation", "変形"};
 inline constexpr Phrase k_force{"force", "力"};
 inline constexpr Phrase k_stretch{"stretch", "伸び"};
 inline constexpr Phrase k_energy{"energy", "エネルギー"};

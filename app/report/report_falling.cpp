@@ -189,9 +189,11 @@ std::string holding_table(ReportPage& page) {
   }
   for (const ordered_json& w : page.report().summary["wedges"]) {
     assumed = true;
-    rows.push_back({escaped(w["name"].get<std::string>()), escaped(w["body"].get<std::string>()),
-                    page.say(words::k_lifted_by, short_shown(1e3 * w["lift_m"].get<double>())), "stopper",
-                    "\u2013", "\u2013", "\u2013", "\u2013"});
+    const bool in_place = !w["nodes"].empty();
+    rows.push_back(
+        {escaped(w["name"].get<std::string>()), escaped(w["body"].get<std::string>()),
+         in_place ? page.say(words::k_lifted_by, short_shown(1e3 * w["lift_m"].get<double>())) : "\u2013",
+         "stopper", "\u2013", "\u2013", "\u2013", in_place ? "\u2013" : page.say(words::k_anchor_away)});
   }
   std::vector<std::string> head;
   for (const Phrase* what :

@@ -136,7 +136,9 @@ inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
 inline constexpr Phrase k_table_note{
     "Overturns: the tilt passes the critical angle (centre of gravity, with what stands on the body, above "
     "the edge of the base) for good "
-    "before the run ends; its column tells that of the edge over which the body leaned most. "
+    "before the run ends; its column tells that of the direction in which the body leaned most, an edge's "
+    "where it leaned across "
+    "one. "
     "Slide: travel of the middle of the base along the floor or the piece that it stands on. Uplift: one "
     "side of the base "
     "carries less than "

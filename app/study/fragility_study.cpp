@@ -10,6 +10,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr double k_usual_slide = 0.05;  // m
+constexpr double k_square = 1 - 1e-6;   // share of the motion, across an edge: all of it
 
 std::string between(const study::Interval& interval) {
   return fmt::format("{:.4g} to {:.4g}", interval.low, interval.high);
@@ -53,13 +54,16 @@ std::string criteria_in_words(const study::FragilityPlan& plan, const study::Fra
   return fmt::format(
       "  West {:.4g}, Ishiyama {:.4g}, evaluation A_R50 {:.4g} {} (corner {:.3g} Hz, motion {:.3g} Hz){}\n",
       c.west, c.ishiyama, c.evaluation, plan.levels.unit, c.corner, results.frequency,
-      c.along_a_line ? ""
-                     : ", of motion over the nearest edge alone; the axis takes all directions together");
+      !c.along_a_line ? ", of motion over the nearest edge alone; the axis takes all directions together"
+      : c.share < k_square
+          ? fmt::format(", over the edge that lifts first, across which {:.3g} of the motion goes", c.share)
+          : "");
 }
 
 std::string in_words(const study::FragilityPlan& plan, const study::FragilityResults& results) {
-  std::string text = fmt::format("probability over the {}{}, sliding over {:g} mm\n", plan.measure->title,
-                                 plan.levels.unit.empty() ? "" : ", " + plan.levels.unit, 1e3 * plan.slide);
+  std::string text = fmt::format(
+      "probability over the {}{}, sliding over {:g} mm before the critical angle\n", plan.measure->title,
+      plan.levels.unit.empty() ? "" : ", " + plan.levels.unit, 1e3 * plan.slide);
   if (results.runs < results.of)
     text +=
         fmt::format("of {} of {} runs alone; the others are not computed yet\n", results.runs, results.of);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/body/model_level.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -50,7 +51,8 @@ void update_candidates(const Model& model, NearSearch& search, State& state, dou
   if (model.bodies.size() < 2 || state.candidate_margin > 2 * travel) return;
   place_nodes(model, state);
   state.candidate_margin = std::max(k_margin, 4 * travel);
-  state.candidate_pairs = search.find(state.position, state.candidate_margin);
+  const std::vector<ElementPair>& found = search.find(state.position, state.candidate_margin);
+  if (!ranges::equal(state.candidate_pairs, found)) state.candidate_pairs = found;
 }
 
 }  // namespace topple

@@ -41,6 +41,7 @@ IslandPart::IslandPart(const Model& model, std::vector<ModelBody> bodies,
 
 void IslandPart::place(const State& state) {
   rigid_.forget();
+  impulses_.reset();
   coupling_.ties().remember(state.anchors);
   coupling_.place_held(state);
   for (int b = 0; b < static_cast<int>(bodies_.size()); ++b)
@@ -240,6 +241,7 @@ void IslandPart::advance_by_impulses(const StepSpan& span, State& next, PartOutc
   outcome.status.time = span.end.time;
   outcome.status.body = bodies_.front().index;
   now_ = &rigid_.contacts();
+  if (outcome.status.ok()) impulses_ = {span.start.time, span.end.time};
 }
 
 void IslandPart::advance_by_substeps(const StepSpan& span, State& next, PartScratch& scratch,
@@ -302,7 +304,13 @@ void IslandPart::find_forces(const StepInputs& now, const State& state, bool wit
 
 void IslandPart::list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                              Forces& forces) {
-  ReducedPart::list_forces(parameters, now, state, forces);
+  // All through a step by impulses contacts push as they do at its end: where its bodies are on the way tells
+  // nothing of that.
+  if (impulses_ && impulses_->start < state.time && state.time < impulses_->end) {
+    for (const auto& [index, body] : bodies_) body->list_contacts(forces.contacts);
+  } else {
+    ReducedPart::list_forces(parameters, now, state, forces);
+  }
   forces.add(*now_, coupling_.pairs());
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,10 @@ class IslandPart final : public ReducedPart {
   Start start_;
   MemberContacts found_;                 // of the newest step or balance,
   const MemberContacts* now_ = &found_;  // or those of rigid_
+  struct Times {
+    double start, end;  // s
+  };
+  std::optional<Times> impulses_;  // of the newest step, whose end's contacts are those known
 };
 
 }  // namespace topple

@@ -18,7 +18,7 @@ std::vector<TiedBodies> tied_bodies(const Model& model, const State& state) {
   return tied;
 }
 
-std::vector<Island> Islands::divide(const std::vector<ElementPair>& candidate_pairs,
+std::vector<Island> Islands::divide(std::span<const ElementPair> candidate_pairs,
                                     const std::vector<TiedBodies>& tied) const {
   const int count = static_cast<int>(model_.bodies.size());
   DisjointSets sets(count);

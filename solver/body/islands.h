@@ -33,7 +33,7 @@ class Islands {
  public:
   explicit Islands(const Model& model);
   /// In the order of their first bodies.
-  std::vector<Island> divide(const std::vector<ElementPair>& candidate_pairs,
+  std::vector<Island> divide(std::span<const ElementPair> candidate_pairs,
                              const std::vector<TiedBodies>& tied) const;
   /// An island as one system of equations, in which `rigid` are no frames; those that keep() keeps last.
   BodySystem* system(const Island& island, const std::vector<int>& rigid = {});

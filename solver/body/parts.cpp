@@ -22,9 +22,12 @@ constexpr std::size_t k_bodies_per_part = 16;  // of few unknowns: some microsec
 void Forces::add(const MemberContacts& found, std::span<const MemberPair> pairs) {
   const std::size_t first = members.size();
   for (const MemberTouch& touch : found.touches) members.push_back(member_force(touch, pairs[touch.pair]));
+  auto last = found.touches.begin();  // blends are in the order of the touches
   for (const MemberBlend& blend : found.blends) {
-    const auto touch = ranges::find(found.touches, blend.pair, &MemberTouch::pair);
+    const auto touch =
+        std::find_if(last, found.touches.end(), [&](const MemberTouch& t) { return t.pair == blend.pair; });
     if (touch == found.touches.end()) continue;
+    last = touch;
     members[first + (touch - found.touches.begin())].force -=
         blend.slope * blend.surplus * (blend.by_sine[0] + blend.by_sine[1]);  // of the nodes of a
   }
@@ -44,7 +47,7 @@ const std::vector<Island>& Parts::islands(const State& state) {
   if (state.candidate_pairs == pairs_ && tied == tied_) return divided_;
   pairs_ = state.candidate_pairs;
   tied_ = std::move(tied);
-  divided_ = islands_.divide(pairs_, tied_);
+  divided_ = islands_.divide(pairs_.all(), tied_);
   levels_.clear();
   return divided_;
 }

@@ -68,7 +68,7 @@ class Parts {
   std::vector<std::unique_ptr<ReducedBody>> reduced_;  // per body, once it was one
   std::vector<std::unique_ptr<PlanarBody>> planar_;    // likewise
   std::vector<Island> divided_;                        // by pairs_ and tied_
-  std::vector<ElementPair> pairs_;                     // of the last call of islands()
+  CandidatePairs pairs_;                               // of the last call of islands()
   std::vector<TiedBodies> tied_;                       // likewise
   std::vector<ModelLevel> levels_;                     // per body, of parts_; empty: there are none
   std::vector<char> with_frames_;                      // per body

@@ -118,10 +118,11 @@ double nearest_gap(const MemberPair& pair, const PairVector& x);
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found);
-/// The same of some of the pairs, in ascending order.
+/// The same of some of the pairs, in ascending order; with_forces false: MemberTouch::out may be missing.
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const int> which, std::span<const Vec3> position,
-                          std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found);
+                          std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
+                          MemberContacts& found);
 
 /// What touches the panel of pair number `index`, added to `found`.
 void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, int index,

@@ -34,21 +34,17 @@ std::vector<MemberPair> member_pairs(const Model& model, std::span<const Element
         segment_of(model, pair.a, rules.by_elements(of_a, of_b)),
         on_panel ? Segment{pair.b, 1, {}} : segment_of(model, pair.b, rules.by_elements(of_b, of_a))};
   };
-  struct Segments {
-    ElementPair elements;
-    std::array<Segment, 2> both;
-  };
-  std::vector<Segments> segments;
+  std::vector<ElementPair> first;
   for (const ElementPair& candidate : candidates) {
-    const std::array<Segment, 2> both = segments_of(candidate);
-    segments.push_back({{both[0].element, both[1].element}, both});
+    const auto [a, b] = segments_of(candidate);
+    first.push_back({a.element, b.element});
   }
-  ranges::sort(segments, {}, &Segments::elements);
-  const auto same = [](const Segments& a, const Segments& b) { return a.elements == b.elements; };
-  segments.erase(std::unique(segments.begin(), segments.end(), same), segments.end());
+  ranges::sort(first);
+  first.erase(std::unique(first.begin(), first.end()), first.end());
   std::vector<MemberPair> pairs;
-  pairs.reserve(segments.size());
-  for (const auto& [elements, both] : segments) {
+  pairs.reserve(first.size());
+  for (const ElementPair& elements : first) {
+    const std::array<Segment, 2> both = segments_of(elements);
     MemberPair& pair = pairs.emplace_back();
     pair.elements = elements;
     pair.panel = panel_of(model, elements.b);

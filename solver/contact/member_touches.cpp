@@ -42,8 +42,10 @@ Vec3 between_at(int place, const PairVector& x) {
 class TouchFinder {
  public:
   TouchFinder(const ContactLaw& law, std::span<const MemberPair> pairs, std::span<const Vec3> position,
-              std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found)
+              std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
+              MemberContacts& found)
       : law_(law),
+        with_forces_(with_forces),
         in_packs_(traits(law).in_packs),
         stores_energy_(traits(law).stores_energy),
         loss_(normal_loss(law.restitution)),
@@ -238,9 +240,9 @@ class TouchFinder {
       store_three(in.stick.data(), sticks[k]);
       in.mass = pairs_[at.pair].mass;
       in.between_members = true;
-      if (!in_packs_) touch.out = contact_force(weighted(law_, touch), in);
+      if (with_forces_ && !in_packs_) touch.out = contact_force(weighted(law_, touch), in);
     }
-    if (in_packs_ && touching != 0) respond(touching, first, depth, L, normal, speed, stick);
+    if (with_forces_ && in_packs_ && touching != 0) respond(touching, first, depth, L, normal, speed, stick);
   }
 
   // contact_force of the coulomb law.
@@ -292,7 +294,7 @@ class TouchFinder {
   }
 
   const ContactLaw& law_;
-  const bool in_packs_, stores_energy_;
+  const bool with_forces_, in_packs_, stores_energy_;
   const double loss_;
   const std::span<const MemberPair> pairs_;
   const std::span<const Vec3> position_, velocity_, start_;
@@ -304,9 +306,10 @@ class TouchFinder {
 template <class Index>
 void find_contacts_of(std::size_t count, Index index, const ContactLaw& law,
                       std::span<const MemberPair> pairs, std::span<const Vec3> position,
-                      std::span<const Vec3> velocity, std::span<const Vec3> start, MemberContacts& found) {
+                      std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
+                      MemberContacts& found) {
   found.clear();
-  TouchFinder finder(law, pairs, position, velocity, start, found);
+  TouchFinder finder(law, pairs, position, velocity, start, with_forces, found);
   const int end = static_cast<int>(count);
   for (int k = 0; k < end; ++k)
     if (pairs[index(k)].panel == nullptr) finder.look_at(index(k));
@@ -322,15 +325,16 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found) {
   const auto all = [](int k) { return k; };
-  find_contacts_of(pairs.size(), all, law, pairs, position, velocity, start, found);
+  find_contacts_of(pairs.size(), all, law, pairs, position, velocity, start, true, found);
 }
 
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const int> which, std::span<const Vec3> position,
-                          std::span<const Vec3> velocity, std::span<const Vec3> start,
+                          std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
                           MemberContacts& found) {
   find_contacts_of(
-      which.size(), [&](int k) { return which[k]; }, law, pairs, position, velocity, start, found);
+      which.size(), [&](int k) { return which[k]; }, law, pairs, position, velocity, start, with_forces,
+      found);
 }
 
 }  // namespace topple

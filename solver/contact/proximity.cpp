@@ -114,9 +114,20 @@ void NearSearch::find_tips(const std::vector<std::pair<int, Box>>& elements, int
         if (is_tip(model_, e, end) &&
             nearest_on_panel(position[model_.elements[e].node[end]], corner).between.norm() <=
                 contact_length(model_, {e, part}) + margin)
-          found_.push_back({e, part});
+          tips_.push_back({e, part});
     }
   }
+}
+
+// Of a part's pairs those with elements, then those with panels: both were found body after body.
+void NearSearch::sort() {
+  starts_.assign(model_.elements.size() + 1, 0);
+  for (const auto* list : {&found_, &tips_})
+    for (const ElementPair& pair : *list) ++starts_[pair.a + 1];
+  for (std::size_t e = 1; e < starts_.size(); ++e) starts_[e] += starts_[e - 1];
+  sorted_.resize(found_.size() + tips_.size());
+  for (const auto* list : {&found_, &tips_})
+    for (const ElementPair& pair : *list) sorted_[starts_[pair.a]++] = pair;
 }
 
 const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position, double margin) {
@@ -129,6 +140,7 @@ const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position,
   }
   find_bodies();
   found_.clear();
+  tips_.clear();
   for (const auto& [a, b] : pairs_) {
     const Box common = boxes_[a].intersection(boxes_[b]);
     find_inside(a, common, position, margin, of_a_);
@@ -145,8 +157,8 @@ const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position,
     find_tips(of_a_, b, common, position, margin);
     find_tips(of_b_, a, common, position, margin);
   }
-  std::sort(found_.begin(), found_.end());
-  return found_;
+  sort();
+  return sorted_;
 }
 
 }  // namespace topple

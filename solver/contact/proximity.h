@@ -1,8 +1,11 @@
 // Candidate pairs: parts of different bodies that may touch soon.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <compare>
+#include <cstdint>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -18,7 +21,32 @@ namespace topple {
 /// tip and a panel. Panels are numbered from the number of elements on.
 struct ElementPair {
   int a = 0, b = 0;
-  auto operator<=>(const ElementPair&) const = default;
+  std::uint64_t key() const {
+    return std::uint64_t{static_cast<unsigned>(a)} << 32 | static_cast<unsigned>(b);
+  }
+  friend bool operator==(const ElementPair& x, const ElementPair& y) { return x.key() == y.key(); }
+  friend auto operator<=>(const ElementPair& x, const ElementPair& y) { return x.key() <=> y.key(); }
+};
+
+/// Candidate pairs, in order. Copies share them, and are compared at once.
+class CandidatePairs {
+ public:
+  CandidatePairs() = default;
+  CandidatePairs(std::vector<ElementPair> pairs)
+      : pairs_(std::make_shared<const std::vector<ElementPair>>(std::move(pairs))) {}
+  std::span<const ElementPair> all() const {
+    return pairs_ ? std::span<const ElementPair>(*pairs_) : std::span<const ElementPair>();
+  }
+  auto begin() const { return all().begin(); }
+  auto end() const { return all().end(); }
+  std::size_t size() const { return all().size(); }
+  bool empty() const { return all().empty(); }
+  friend bool operator==(const CandidatePairs& x, const CandidatePairs& y) {
+    return x.pairs_ == y.pairs_ || std::equal(x.begin(), x.end(), y.begin(), y.end());
+  }
+
+ private:
+  std::shared_ptr<const std::vector<ElementPair>> pairs_;
 };
 
 /// The panel that a part is; null: an element.
@@ -85,6 +113,7 @@ class NearSearch {
                    std::vector<std::pair<int, Box>>& elements) const;
   void find_tips(const std::vector<std::pair<int, Box>>& elements, int other, const Box& common,
                  std::span<const Vec3> position, double margin);
+  void sort();
 
   const Model& model_;
   const std::vector<bool> held_;
@@ -92,7 +121,8 @@ class NearSearch {
   std::vector<Placed> cells_;                     // free bodies by place
   std::vector<std::pair<int, int>> pairs_;        // bodies
   std::vector<std::pair<int, Box>> of_a_, of_b_;  // elements where two boxes overlap
-  std::vector<ElementPair> found_;
+  std::vector<ElementPair> found_, tips_, sorted_;
+  std::vector<int> starts_;  // per element: of its pairs in sorted_
 };
 
 }  // namespace topple

@@ -74,7 +74,18 @@ double PlanarRun::middle(double centre) const {
 
 template <class P>
 void PlanarRun::observe(const PackStep<P>& step, int lane) {
-  if (!lifted_ && state_.mode != Mode::rest && state_.mode != Mode::slide) lifted_ = state_.time;
+  const double length = of_lane(step.length, lane);
+  const Series<double> tilt = step.solution.tilt.alone(lane);
+  // When it first leans further than an angle to that side in the step, s.
+  const auto first_beyond = [&](double sense, double angle) {
+    const double after = length > 0 ? Falls<double>(length, tilt.degree).first(tilt, -sense, angle) : k_never;
+    return after < k_never ? of_lane(step.start, lane).time + after : k_never;
+  };
+  const auto rocks = [](Mode mode) { return mode != Mode::rest && mode != Mode::slide; };
+  if (!lifted_ && (rocks(state_.mode) || rocks(of_lane(step.start, lane).mode)))
+    if (const double time = std::min(first_beyond(1, k_uplift_angle), first_beyond(-1, k_uplift_angle));
+        time < k_never)
+      lifted_ = time;
   const double centre = centre_of_gravity(case_.block, state_, step_.leg.known).x;
   left_ = std::abs(centre) > case_.farthest;
   const double sign = state_.tilt < 0 ? -1 : 1;
@@ -83,11 +94,8 @@ void PlanarRun::observe(const PackStep<P>& step, int lane) {
     beyond_since_.reset();
     peak_slide_ = std::max(peak_slide_, std::abs(middle(centre) - middle_at_start_));
   } else if (!beyond_since_) {
-    const double length = of_lane(step.length, lane);
-    const Series<double> tilt = step.solution.tilt.alone(lane);
-    const double fall =
-        length > 0 ? Falls<double>(length, tilt.degree).first(tilt, -sign, critical) : k_never;
-    beyond_since_ = fall < k_never ? of_lane(step.start, lane).time + fall : state_.time;
+    const double time = first_beyond(sign, critical);
+    beyond_since_ = time < k_never ? time : state_.time;
   }
 }
 

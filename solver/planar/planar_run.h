@@ -34,8 +34,9 @@ class PlanarRun {
   bool left() const { return left_; }  ///< came within reach of something else: not known what it does
 
   const State& state() const { return state_; }
-  const Step& step() const { return step_; }                ///< the newest of those taken alone
-  std::optional<double> lifted() const { return lifted_; }  ///< s, first uplift
+  const Step& step() const { return step_; }  ///< the newest of those taken alone
+  /// s: it has turned by k_uplift_angle (as BodyOutcome::first_uplift counts).
+  std::optional<double> lifted() const { return lifted_; }
   /// m, greatest travel of the middle of the base at ends of steps, up to the critical angle (as
   /// BodyOutcome::peak_slide).
   double peak_slide() const { return peak_slide_; }

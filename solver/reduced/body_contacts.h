@@ -50,6 +50,9 @@ struct NearContact {
   double depth, L;                        ///< 1 - l/L, negative while open; m
   double alpha;                           ///< N
   double stick_stiffness, stick_damping;  ///< N/m, N s/m
+  /// m/s, floor's axes: what a velocity along and across the normal gains until the step ends, as the bodies
+  /// turn and slide.
+  Vec3 turning = Vec3::Zero();
 };
 
 /// The contact points of one body against all planes.

@@ -1,11 +1,12 @@
 // Velocities that rigid bodies have after a step in whose middle its contacts are looked at. Where they are
 // and point to stays; they open, close and slide as the velocities at its end say:
-//   M (u - u0) = h (F + sum_c J_c^T f_c(d_c - theta h/2 n.J_c u/L, J_c u, s_c + h/2 J_c u))
-//   theta = w^2/(16 + w^2),  w = h frequency()
-// n, J, d, s: normal, map to the relative velocity, depth and stick spring of contact c in the middle; F:
-// what else acts; f: the coulomb law. Where contacts are stiff for the step, forces are those of its end:
-// none is too stiff, and what rests on them stays (Moreau 1988; Anitescu and Potra 1997). Where they are soft
-// theta goes to 0, and the method to that of Stormer and Verlet, which is of second order and damps nothing.
+//   M (u - u0) = h (F + sum_c J_c^T f_c(d_c - theta h/2 n.v_c/L, v_c + b_c/2, s_c + h/2 v_c))
+//   v_c = J_c u + b_c/2,  theta = w^2/(16 + w^2),  w = h frequency()
+// n, J, d, s: normal, map to the relative velocity, depth and stick spring of contact c in the middle; b:
+// what the motion at the start adds to that velocity until the end (NearContact::turning); F: what else acts;
+// f: the coulomb law. Where contacts are stiff for the step, forces are those of its end: none is too stiff,
+// and what rests on them stays (Moreau 1988; Anitescu and Potra 1997). Where they are soft theta goes to 0,
+// and the method to that of Stormer and Verlet, which is of second order and damps nothing.
 #pragma once
 
 #include <array>
@@ -41,7 +42,8 @@ class ContactImpulses {
   /// `guess`: where the search for its velocity begins.
   void add(const RigidBody& body, const Velocity& guess);
   /// Between bodies by their order of addition; second -1: a plane or what is held. grip: Body::grip.
-  /// hardens: as between members (penalty_force). Returns the contact's number, for stick().
+  /// hardens: as between members (penalty_force). Those of two bodies at one place, as where members end in a
+  /// corner, become one contact. Returns its number, for stick().
   int add(int first, int second, double grip, bool hardens, const NearContact& contact);
   /// Whether at a contact that is closed, or closes in the step, the bodies meet or part faster than `speed`,
   /// m/s.
@@ -59,7 +61,7 @@ class ContactImpulses {
  private:
   using Points = PackVector<Four>;
   struct FourContacts {
-    Points normal, arm[2], stick;
+    Points normal, arm[2], stick, turning;
     Four depth, L, alpha, k, c;
   };
   // Contacts of the same two bodies.
@@ -69,6 +71,9 @@ class ContactImpulses {
     bool hardens;
     int first, count;  // pack; contacts
   };
+  int* find_place(const NearContact& contact);
+  bool is_at(int number, const NearContact& contact) const;
+  void merge(int number, const NearContact& contact);
   struct Slopes;
   struct Motion;
   struct Springs;
@@ -88,6 +93,7 @@ class ContactImpulses {
   std::vector<Velocity> u_;
   std::vector<FourContacts> contacts_;
   std::vector<Touching> touching_;
+  std::array<int, 256> places_;  // of the newest Touching: numbers of contacts, by a hash of their place
   std::vector<double> left_, correction_;  // six per body
   // Limits of friction that follow the normal forces make the matrix unsymmetric. Where Newton does not get
   // on with that they are held in it: a slower way, but down.

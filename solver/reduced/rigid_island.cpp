@@ -1,7 +1,9 @@
 #include "solver/reduced/rigid_island.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <deque>
 #include <limits>
 #include <utility>
@@ -90,9 +92,8 @@ double RigidIsland::time_limit(const Parameters& parameters, const State& state)
   return limit;
 }
 
-// Bound of the way by which members of both bodies come nearer within h, m, as they move at the start. What
-// acts on them is not asked: it is known only when this is.
-double RigidIsland::coming(const BodyPair& both, const State& state, double h) const {
+// Of points of one body against the other as they move at `state`, m/s: none is faster.
+double RigidIsland::relative_speed(const BodyPair& both, const State& state) const {
   const auto& [last, of_last] = bodies_[both.second < 0 ? both.first : both.second];
   const Vec3 at = state.bodies[last].position;
   Vec3 speed = Vec3::Zero(), spin = Vec3::Zero();  // of the first to the second
@@ -104,7 +105,13 @@ double RigidIsland::coming(const BodyPair& both, const State& state, double h) c
     speed += sign * (s.velocity + own.cross(at - s.position));
     spin += sign * own;
   }
-  return k_more_way + k_likely * h * (speed.norm() + (of_last->reach() + k_most_gap) * spin.norm());
+  return speed.norm() + (of_last->reach() + k_most_gap) * spin.norm();
+}
+
+// Bound of the way by which members of both bodies come nearer within h, m, as they move at the start. What
+// acts on them is not asked: it is known only when this is.
+double RigidIsland::coming(const BodyPair& both, const State& state, double h) const {
+  return k_more_way + k_likely * h * relative_speed(both, state);
 }
 
 // The same of the way from here_.
@@ -162,30 +169,33 @@ void RigidIsland::take_gaps(std::span<const int> which) {
   }
 }
 
-// What touches where the bodies are, and with h > 0 what may within h, s. Stick springs are those at start_.
+// What touches where the bodies are; with h > 0 what may within h, s, too, and without forces. Stick springs
+// are those at start_.
 void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
   const std::span<MemberPair> pairs = coupling_.pairs();
-  which_.clear();
+  chosen_.assign((pairs.size() + 63) / 64, 0);
   for (BodyPair& both : body_pairs_) {
     both.near.clear();
-    both.ahead = h > 0 ? coming(both, state, h) : 0;
-    both.least_unseen = both.least;
+    both.ahead_before = std::exchange(both.ahead, h > 0 ? coming(both, state, h) : 0);
     if (both.least > both.closed + both.ahead) continue;
-    both.least_unseen = std::numeric_limits<double>::infinity();
+    both.least = std::numeric_limits<double>::infinity();
     for (const int p : both.pairs) {
       if (open_until_[p] > both.closed + both.ahead) {
-        both.least_unseen = std::min(both.least_unseen, open_until_[p]);
+        both.least = std::min(both.least, open_until_[p]);
         continue;
       }
       MemberPair& pair = pairs[p];
       pair.ahead = both.ahead;
       pair.gap = 0;
       for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = start_[pair.node[k]];
-      which_.push_back(p);
+      chosen_[p / 64] |= std::uint64_t{1} << p % 64;
     }
   }
-  ranges::sort(which_);
-  find_member_contacts(law, pairs, which_, coupling_.position(), coupling_.velocity(), start_, now_);
+  which_.clear();
+  for (std::size_t word = 0; word < chosen_.size(); ++word)
+    for (std::uint64_t left = chosen_[word]; left != 0; left &= left - 1)
+      which_.push_back(static_cast<int>(64 * word) + std::countr_zero(left));
+  find_member_contacts(law, pairs, which_, coupling_.position(), coupling_.velocity(), start_, h == 0, now_);
   found_.assign(pairs.size(), false);
   for (const auto* list : {&now_.touches, &now_.ahead})
     for (const MemberTouch& touch : *list) {
@@ -206,7 +216,6 @@ void RigidIsland::find_bounds() {
       stale_.push_back(p);
   }
   take_gaps(stale_);
-  for (BodyPair& both : body_pairs_) both.least = both.least_unseen;
   for (const int p : which_) {
     double& least = body_pairs_[body_pair_of_[p]].least;
     least = std::min(least, open_until_[p]);
@@ -245,12 +254,29 @@ void RigidIsland::add_bodies(const StepSpan& span, const State& state, TouchingB
     const ReducedBody& body = *bodies_[set.bodies[k]].body;
     const BodyState& s = state.bodies[bodies_[set.bodies[k]].index];
     const double way = k_more_way + k_likely * h * (speed_of(body, s) + h / 2 * s.force.norm() / body.mass());
-    const auto add = [&](const NearContact& contact) {
+    const Vec3 spin = s.rotation * s.angular_velocity;
+    const auto add = [&](NearContact contact) {
+      contact.turning = h / 2 * spin.cross(spin.cross(contact.arm[0]));
       set.impulses.add(k, -1, body.contacts().grip(), false, contact);
     };
     const BodyState& before = start_of_[set.bodies[k]];
     body.contacts().each_near(span.end.law, before, turned(before), s, turned(s), state.stick, way, add);
   }
+}
+
+// Of a place that touched at the start: what its velocity will gain until the end as it has until the middle,
+// with velocities of the bodies that stay.
+Vec3 RigidIsland::turning_of(const MemberTouch& touch) const {
+  const ContactInput& now = touch.input;
+  for (int k = first_at_start_[touch.pair]; k >= 0 && k < static_cast<int>(last_.touches.size()); ++k) {
+    const MemberTouch& was = last_.touches[k];
+    if (was.pair != touch.pair) break;
+    if (was.place != touch.place) continue;
+    const Vec3 gained = now.velocity - was.input.velocity;
+    const double opening = now.normal.dot(now.velocity) - was.input.normal.dot(was.input.velocity);
+    return gained + (opening - now.normal.dot(gained)) * now.normal;
+  }
+  return Vec3::Zero();
 }
 
 void RigidIsland::add_contacts(const PreparedLaw& law, const BodyPair& both, TouchingBodies& set) {
@@ -270,7 +296,8 @@ void RigidIsland::add_contacts(const PreparedLaw& law, const BodyPair& both, Tou
         in.L,
         alpha,
         k,
-        c};
+        c,
+        sign * turning_of(*touch)};
     set.contacts.emplace_back(
         touch,
         set.impulses.add(place_[both.first], both.second < 0 ? -1 : place_[both.second], 1, true, contact));
@@ -304,8 +331,12 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
     add_bodies(span, state, set);
     for (const int b : bodies) set_of[b] = &set;
   }
+  first_at_start_.resize(body_pair_of_.size(), -1);
+  for (int k = static_cast<int>(last_.touches.size()) - 1; k >= 0; --k)
+    first_at_start_[last_.touches[k].pair] = k;
   for (const BodyPair& both : body_pairs_)
     if (!both.near.empty()) add_contacts(law, both, *set_of[both.first]);
+  for (const MemberTouch& touch : last_.touches) first_at_start_[touch.pair] = -1;
   double fall = std::numeric_limits<double>::infinity();
   for (const ModelBody& b : bodies_) fall = std::min(fall, fall_speed(span.parameters, *b.body));
   bounces_ = false;
@@ -348,9 +379,14 @@ void RigidIsland::move(double h, State& state, StepEnergy& booked) {
   go_to(state);
 }
 
-// Whether bodies came nearer than was looked at, so that something may have met unseen.
+// Whether something has met at the end that was not near enough in the middle to be looked at. Where it is
+// asked does not depend on the steps before, as bounds do.
 bool RigidIsland::missed() const {
-  return ranges::any_of(body_pairs_, [](const BodyPair& of) { return of.closed > of.least_unseen; });
+  return ranges::any_of(now_.touches, [this](const MemberTouch& touch) {
+    if (found_before_[touch.pair]) return false;
+    const MemberPair& pair = coupling_.pairs()[touch.pair];
+    return nearest_gap(pair, gather(pair, from_)) > body_pairs_[body_pair_of_[touch.pair]].ahead_before;
+  });
 }
 
 // Whether a pair went through each other in the newest move.
@@ -390,10 +426,9 @@ RigidIsland::Held RigidIsland::held(const ContactLaw& law) const {
   return held;
 }
 
-void RigidIsland::book(const StepSpan& span, const State& next, const Held& before,
-                       StepEnergy& booked) const {
+void RigidIsland::book(const StepSpan& span, const State& next, StepEnergy& booked) {
   const Vec3 floor = (span.start.floor + span.end.floor) / 2;
-  const Held now = held(span.end.law);
+  const Held before = std::exchange(held_, held(span.end.law)), &now = held_;
   double in_sticks = now.sticks - before.sticks;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto& [index, body] = bodies_[b];
@@ -406,11 +441,30 @@ void RigidIsland::book(const StepSpan& span, const State& next, const Held& befo
   booked.normal_damping += work_.normal - (now.all - before.all - in_sticks);
 }
 
+// Per body, m/s: the greatest against what it touches, where nothing its own. What is carried along is slow.
+std::vector<double> RigidIsland::speeds(const State& state) const {
+  std::vector<double> speed(bodies_.size(), -1);
+  for (const BodyPair& both : body_pairs_) {
+    if (both.near.empty()) continue;
+    const double relative = relative_speed(both, state);
+    for (const int b : {both.first, both.second})
+      if (b >= 0) speed[b] = std::max(speed[b], relative);
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const auto& [index, body] = bodies_[b];
+    if (speed[b] < 0 || body->contacts().any())
+      speed[b] = std::max(speed[b], speed_of(*body, state.bodies[index]));
+  }
+  return speed;
+}
+
 // s, that is tried next at `state`.
 double RigidIsland::next_step(const Parameters& parameters, double h, const State& state) const {
+  const std::vector<double> speeds = this->speeds(state);
   double limit = bounces_ ? h : k_most_growth * h;
-  for (const auto& [index, body] : bodies_) {
-    const double slow = k_slow * fall_speed(parameters, *body), speed = speed_of(*body, state.bodies[index]);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    const ReducedBody* const body = bodies_[b].body;
+    const double slow = k_slow * fall_speed(parameters, *body), speed = speeds[b];
     limit = std::min(limit, step_of(parameters, *body) *
                                 (speed * k_most_growth > slow ? std::max(1., slow / speed) : k_most_growth));
   }
@@ -427,8 +481,8 @@ StepStatus::Kind RigidIsland::advance(const StepSpan& span, State& next, MemberS
     start(next, sticks);
     start_ = coupling_.position();
     look(law, next, 0);
+    held_ = held(law);
   }
-  const Held before = held(law);
   forget();  // until it has succeeded
   start_of_.clear();
   for (const ModelBody& b : bodies_) start_of_.push_back(next.bodies[b.index]);
@@ -444,17 +498,17 @@ StepStatus::Kind RigidIsland::advance(const StepSpan& span, State& next, MemberS
     s.angular_velocity = unpacked(transposed_times(turned(s), velocity_[b].angular));
   }
   move(span.h / 2, next, booked);
-  if (missed()) return StepStatus::Kind::passed_through;
   take_sticks();
   std::swap(last_, now_);
+  std::swap(found_before_, found_);
   start_ = coupling_.position();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto& [index, body] = bodies_[b];
     body->find_contacts_after(start_of_[b], law, next.bodies[index], next.stick);
   }
   look(law, next, 0);
-  if (passed()) return StepStatus::Kind::passed_through;
-  book(span, next, before, booked);
+  if (missed() || passed()) return StepStatus::Kind::passed_through;
+  book(span, next, booked);
   finish(span, next, sticks);
   return StepStatus::Kind::ok;
 }

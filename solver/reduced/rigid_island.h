@@ -3,9 +3,11 @@
 // the other half,
 //   x = x0 + h/2 u0 + h/2 u1,  R with its angular momentum kept (Lie midpoint),
 // and a look at the end tells what acts there. It is of second order while no contact opens, closes or slips.
-// Its length is 6.3 tolerance sqrt(reach/g), up to three times that where nothing moves; blows are resolved.
+// Its length is 6.3 tolerance sqrt(reach/g), up to three times that where bodies are slow against what they
+// touch; blows are resolved.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,9 +55,8 @@ class RigidIsland {
     std::vector<int> pairs;
     // Bounds of the way by which they have come nearer, m: so far, and in the newest step.
     double closed = 0, way = 0;
-    // Of `closed`, m: before these no pair touches, and none of those that were not looked at.
-    double least = 0, least_unseen = 0;
-    double ahead = 0;                      // m, by which they may come nearer in the step
+    double least = 0;                      // of `closed`, m: before it no pair touches
+    double ahead = 0, ahead_before = 0;    // m, by which they may come nearer; in the look before
     std::vector<const MemberTouch*> near;  // what touches, or may
   };
   // Bodies that touch each other, and what is kept for them from step to step.
@@ -76,6 +77,7 @@ class RigidIsland {
   static Known known_of(const BodyState& s) {
     return {s.position, s.velocity, s.angular_velocity, s.rotation, s.substep};
   }
+  double relative_speed(const BodyPair& both, const State& state) const;
   double coming(const BodyPair& both, const State& state, double h) const;
   double came(const BodyPair& both, const std::vector<Known>& there) const;
   void start(const State& state, const MemberSticks& sticks);
@@ -86,6 +88,7 @@ class RigidIsland {
   TouchingBodies& together(const std::vector<int>& bodies);
   bool solve(const StepSpan& span, const State& state);
   void add_bodies(const StepSpan& span, const State& state, TouchingBodies& set);
+  Vec3 turning_of(const MemberTouch& touch) const;
   void add_contacts(const PreparedLaw& law, const BodyPair& both, TouchingBodies& set);
   void move(double h, State& state, StepEnergy& booked);
   bool missed() const;
@@ -95,8 +98,9 @@ class RigidIsland {
     double all, sticks;  // J, by contacts; of that by stick springs between members
   };
   Held held(const ContactLaw& law) const;
-  void book(const StepSpan& span, const State& next, const Held& before, StepEnergy& booked) const;
+  void book(const StepSpan& span, const State& next, StepEnergy& booked);
   void finish(const StepSpan& span, State& next, MemberSticks& sticks);
+  std::vector<double> speeds(const State& state) const;
   double next_step(const Parameters& parameters, double h, const State& state) const;
 
   const std::vector<ModelBody>& bodies_;
@@ -110,20 +114,23 @@ class RigidIsland {
   // What is known, where and with what.
   std::vector<Known> here_;  // per body
   std::optional<ContactLaw> law_;
+  Held held_;  // with the law, by now_ and the contacts with planes
   MemberContacts now_;
-  std::vector<int> which_;  // pairs looked at
+  std::vector<int> which_;  // pairs looked at, in order; as bits
+  std::vector<std::uint64_t> chosen_;
   // Of a step.
   MemberContacts last_;              // where bodies were looked at before
+  std::vector<int> first_at_start_;  // per pair: of last_.touches; -1: none
   std::vector<Vec3> start_, from_;   // m, per node of the coupling: of stick springs; before the newest move
   std::vector<BodyState> start_of_;  // per body
   std::vector<TouchingBodies*> used_;
   std::vector<ContactImpulses::Velocity> velocity_;  // per body
   std::vector<BodyVelocity> blends_;                 // per body, what MemberContacts::blends do: held
   ContactImpulses::Work work_;
-  bool bounces_ = false;     // something struck
-  std::vector<int> place_;   // per body, within its set
-  std::vector<int> stale_;   // pairs whose gaps are to be found anew
-  std::vector<char> found_;  // per pair: now_ lists it
+  bool bounces_ = false;                    // something struck
+  std::vector<int> place_;                  // per body, within its set
+  std::vector<int> stale_;                  // pairs whose gaps are to be found anew
+  std::vector<char> found_, found_before_;  // per pair: now_ lists it, last_ does
 };
 
 }  // namespace topple

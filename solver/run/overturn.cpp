@@ -10,6 +10,7 @@
 #include "solver/element/plasticity.h"
 #include "solver/element/section_forces.h"
 #include "solver/math/elementary.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -50,10 +51,22 @@ bool has_floor(const Model& model) {
          std::any_of(model.bodies.begin(), model.bodies.end(), [](const Body& body) { return body.ground; });
 }
 
+/// m, up to which what pushes a body up acts on its base.
+double base_slack(const Body& body) {
+  return 1e-6 + 1e-6 * body.reach;
+}
+
+bool reaches_base(const Model& model, int part) {
+  const Body& body = model.bodies[body_of(model, part)];
+  return !body.support_polygon.empty() && ranges::any_of(nodes_of(model, part), [&](int node) {
+    return model.node_position[node].z() <= body.support_polygon.front().z() + base_slack(body);
+  });
+}
+
 /// What holds a body higher up may break, and lets it fall then.
 bool is_base_supported(const Model& model, int index) {
   const Body& body = model.bodies[index];
-  const double base = body.support_polygon.front().z() + 1e-6 * (1 + body.reach);
+  const double base = body.base_centre.z() + 1e-6 * (1 + body.reach);
   return std::any_of(model.supports.begin(), model.supports.end(), [&](const Support& support) {
     return model.node_body[support.node] == index && model.node_position[support.node].z() <= base;
   });
@@ -136,6 +149,7 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
 }
 
 double slide(const Model& model, int index, const BodyPose& pose, const Bearer& bearer, const BodyPose& on) {
+  if (is_base_supported(model, index)) return 0;
   return (place_on(model, index, pose, bearer.body, on) - bearer.place).head<2>().norm();
 }
 
@@ -166,6 +180,8 @@ Outcome::Outcome(const Model& model, const std::vector<BodyStart>& starts)
     inner_of_.emplace_back(body.contact_point_count);
     for (int side = 0; side < static_cast<int>(sides); ++side) list_points(model, body, side);
   }
+  const int parts = static_cast<int>(model.elements.size() + model.panels.size());
+  for (int part = 0; part < parts; ++part) reaches_base_.push_back(reaches_base(model, part));
 }
 
 // What rocks over the opposite side stands on the points farthest from this one; of a base with three legs or
@@ -193,11 +209,10 @@ void Outcome::list_points(const Model& model, const Body& body, int side) {
 }
 
 void Outcome::carry(const Model& model, int part, double t, double u, const Vec3& force) {
-  if (!(force.z() > 0)) return;
+  if (!(force.z() > 0) || !reaches_base_[part]) return;
   const int b = body_of(model, part);
   const Body& body = model.bodies[b];
-  if (body.support_polygon.empty()) return;
-  const double base = body.support_polygon.front().z(), slack = 1e-6 + 1e-6 * body.reach;
+  const double base = body.support_polygon.front().z(), slack = base_slack(body);
   Vec3 x = Vec3::Zero();
   each_share(model, part, t, u, [&](int node, double share) { x += share * model.node_position[node]; });
   if (x.z() > base + slack) return;
@@ -435,14 +450,27 @@ void Outcome::observe_anchors(const Model& model, const State& state, std::vecto
   }
 }
 
+namespace {
+
+// f(element, body) of the bodies that have stresses now.
+template <class F>
+void each_stressed_element(const Model& model, const State& state, F f) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (!traits(state.bodies[b].level).has_stresses) continue;
+    const Body& body = model.bodies[b];
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
+      f(e, static_cast<int>(b));
+  }
+}
+
+}  // namespace
+
 void Outcome::observe_stresses(const Model& model, const State& state,
                                const std::vector<SectionForces>& sections) {
-  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+  each_stressed_element(model, state, [&](int e, int body) {
     const Element& element = model.elements[e];
-    const Member& member = model.members[element.member];
-    if (!traits(state.bodies[member.body].level).has_stresses) continue;
-    BodyOutcome& o = bodies_[member.body];
-    const Eigen::Vector4d& stress = unit_stress_[member.section];
+    BodyOutcome& o = bodies_[body];
+    const Eigen::Vector4d& stress = unit_stress_[model.members[element.member].section];
     double greatest = 0;
     const bool yields = std::isfinite(element.capacity[0]);
     for (int end = 0; end < 2; ++end) {
@@ -456,26 +484,25 @@ void Outcome::observe_stresses(const Model& model, const State& state,
           std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
     }
     if (greatest > o.peak_stress * o.peak_stress) o.peak_stress = std::sqrt(greatest);
-  }
+  });
 }
 
 void Outcome::observe_sections(const Model& model, const State& state,
                                const std::vector<SectionForces>& sections, std::vector<Event>& events) {
   observe_stresses(model, state, sections);
-  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+  each_stressed_element(model, state, [&](int e, int body) {
     const Element& element = model.elements[e];
     const ElementState& now = state.elements[e];
-    const Member& member = model.members[element.member];
-    if (now.hinge == Hinge::none || !traits(state.bodies[member.body].level).has_stresses) continue;
-    BodyOutcome& o = bodies_[member.body];
+    if (now.hinge == Hinge::none) return;
+    BodyOutcome& o = bodies_[body];
     const auto tell = [&](Event::Kind kind, Hinge hinge, int& count) {
       ++count;
       events.push_back({.kind = kind,
                         .step = state.step,
                         .time = state.time,
-                        .body = member.body,
+                        .body = body,
                         .value = static_cast<double>(hinge),
-                        .element = static_cast<int>(e)});
+                        .element = e});
     };
     if (now.hinge == Hinge::broken && !std::exchange(broke_[e], true))
       tell(Event::Kind::fracture, now.hinge, o.fractures);
@@ -486,7 +513,7 @@ void Outcome::observe_sections(const Model& model, const State& state,
              : place == 0             ? Hinge::first
                                       : Hinge::second,
              o.hinges);
-  }
+  });
 }
 
 bool Outcome::all_overturned(double time) const {

@@ -25,11 +25,6 @@ namespace topple {
 inline constexpr double k_uplift = 1e-3;
 inline constexpr double k_closing = 1e-2;
 
-/// Angle by which a body turns after a side has let go for that to count as uplift, and its closing as an
-/// impact, rad: 0.05 degrees, 0.3 mm below a base of 0.3 m. A body that bends sheds the load of a side for
-/// some milliseconds at hundredths of a degree.
-inline constexpr double k_uplift_angle = 0.05 * k_pi / 180;
-
 /// Impacts of a body of which time and the peak that follows are kept.
 inline constexpr std::size_t k_kept_impacts = 100;
 
@@ -200,6 +195,7 @@ class Outcome {
   std::vector<Eigen::Vector4d> unit_stress_;              ///< per section: Pa by N, Mx, My and Mz of one
   /// Per body, per side: N, on it and between it and the opposite side.
   std::vector<std::vector<double>> side_force_, inner_force_;
+  std::vector<char> reaches_base_;   ///< per element, then per panel: a node of it is of its body's base
   std::vector<double> total_force_;  ///< per body, N
   /// Per body: contact point (from 0) to the sides that it lies on, and to those before which it lies.
   std::vector<std::vector<std::vector<int>>> side_of_, inner_of_;

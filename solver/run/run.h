@@ -44,8 +44,10 @@ struct Probe {
 struct Wedge {
   std::string name;
   int body;
-  std::vector<int> nodes;
-  double lift;  ///< m
+  std::vector<int> nodes = {};  ///< none: it is not in place
+  double lift = 0;              ///< m
+
+  bool in_place() const { return !nodes.empty(); }
 };
 
 /// All that a run needs.

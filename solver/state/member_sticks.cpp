@@ -13,14 +13,22 @@ bool in_order(const MemberStick& a, const MemberStick& b) {
   return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
 }
 
-void sort(std::vector<MemberStick>& sticks) {
-  if (!std::is_sorted(sticks.begin(), sticks.end(), in_order))
+// Mostly they are two that are in order one behind the other.
+void sort(std::vector<MemberStick>& sticks, std::vector<MemberStick>& merged) {
+  const auto second = std::is_sorted_until(sticks.begin(), sticks.end(), in_order);
+  if (second == sticks.end()) return;
+  if (!std::is_sorted(second, sticks.end(), in_order)) {
     std::sort(sticks.begin(), sticks.end(), in_order);
+    return;
+  }
+  merged.clear();
+  std::merge(sticks.begin(), second, second, sticks.end(), std::back_inserter(merged), in_order);
+  sticks.swap(merged);
 }
 
 // Those of `pairs` become those in `sticks`. All are in order.
 void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& sticks,
-             std::vector<MemberStick>& all) {
+             std::vector<MemberStick>& all, std::vector<MemberStick>& merged) {
   auto pair = pairs.begin();
   const auto own = [&](const MemberStick& stick) {
     while (pair != pairs.end() && pair->elements < stick.elements) ++pair;
@@ -29,7 +37,7 @@ void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& 
   std::erase_if(all, own);
   pair = pairs.begin();
   ranges::copy_if(sticks, std::back_inserter(all), own);
-  sort(all);
+  sort(all, merged);
 }
 
 }  // namespace
@@ -50,8 +58,8 @@ void MemberSticks::store(std::span<const MemberTouch> touches, std::span<const M
   new_.clear();
   for (const MemberTouch& touch : touches)
     new_.push_back({pairs[touch.pair].elements, touch.place, touch.out.stick});
-  sort(new_);
-  replace(pairs, new_, keeps_ ? own_ : state.member_sticks);
+  sort(new_, merged_);
+  replace(pairs, new_, keeps_ ? own_ : state.member_sticks, merged_);
 }
 
 void MemberSticks::take(const State& state) {
@@ -61,7 +69,7 @@ void MemberSticks::take(const State& state) {
 
 void MemberSticks::give(std::span<const MemberPair> pairs, State& state) {
   keeps_ = false;
-  replace(pairs, own_, state.member_sticks);
+  replace(pairs, own_, state.member_sticks, merged_);
 }
 
 }  // namespace topple

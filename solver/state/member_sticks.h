@@ -22,7 +22,7 @@ class MemberSticks {
   void give(std::span<const MemberPair> pairs, State& state);
 
  private:
-  std::vector<MemberStick> own_, new_;
+  std::vector<MemberStick> own_, new_, merged_;
   bool keeps_ = false;
 };
 

@@ -143,7 +143,7 @@ void each_block_number(AnyBlock& b, F f) {
 
 // Pairs of elements as numbers of eight bytes, as in a checkpoint.
 double as_number(const ElementPair& pair) {
-  return bits_as<double>(std::int64_t{pair.a} << 32 | pair.b);
+  return bits_as<double>(pair.key());
 }
 
 ElementPair as_pair(double number) {
@@ -185,11 +185,12 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
   const auto is_pair = [&](const ElementPair& pair) {
     return pair.a >= 0 && pair.a < elements && pair.b >= 0 && pair.b < parts;
   };
-  s.candidate_pairs.resize(read_count(1));
-  for (ElementPair& pair : s.candidate_pairs) {
+  std::vector<ElementPair> pairs(read_count(1));
+  for (ElementPair& pair : pairs) {
     pair = as_pair(read());
     if (!is_pair(pair)) return false;
   }
+  s.candidate_pairs = std::move(pairs);
   s.member_sticks.resize(read_count(5));
   for (MemberStick& stick : s.member_sticks) {
     stick.elements = as_pair(read());
@@ -459,7 +460,6 @@ void each_moved_array(F f) {
   f(&State::blocks);
   f(&State::stick);
   f(&State::member_sticks);
-  f(&State::candidate_pairs);
   f(&State::anchors);
 }
 
@@ -482,6 +482,7 @@ template <class F>
 void each_moved_number(F f) {
   f(&State::time);
   f(&State::step);
+  f(&State::candidate_pairs);
   f(&State::candidate_margin);
   f(&State::floor_displacement);
   f(&State::floor_velocity);

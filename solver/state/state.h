@@ -78,7 +78,7 @@ struct State {
   std::vector<Vec3> stick;
   std::vector<MemberStick> member_sticks;  ///< in the order of elements, then places
   /// That may touch before `candidate_margin` is used up, in order.
-  std::vector<ElementPair> candidate_pairs;
+  CandidatePairs candidate_pairs;
   double candidate_margin = 0;             ///< m, by which bodies may still approach each other
   std::vector<ElementState> elements;      ///< index as Model::elements
   std::vector<AnchorState> anchors;        ///< index as Model::anchors

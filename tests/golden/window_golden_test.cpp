@@ -115,6 +115,12 @@ TEST_F(GoldenWindow, overturning_map) {
   for (int round = 0; round < 40 && !computed; ++round)
     computed = static_cast<bool>(until([&] { return map.search && map.search->over(); }));
   ASSERT_TRUE(computed);
+  ImGui::GetIO().MousePos = {viewer().scene_box().width + 20, 300};  // the click scrolled to its button
+  for (int notch = 0; notch < 20; ++notch) {
+    ImGui::GetIO().MouseWheel = 1;
+    frame();
+  }
+  ImGui::GetIO().MouseWheel = 0;
   ImGui::GetIO().MousePos = {2, 400};
   render::expect_golden(side(), "window-map.png");
 }

@@ -60,7 +60,10 @@ class Fixing {
   // Raises the corners of the base that are farthest from the wall, by contact points that reach lower there:
   // the body starts as it leans on them, or on the wall if it comes to lean there first.
   void lift() {
-    if (!entry_.flag("on")) return;
+    if (!entry_.flag("on")) {
+      setup_.wedges.push_back({entry_.name(), body_});
+      return;
+    }
     for (const char* key : {"at", "stiffness", "strength", "preload"})
       if (entry_.has(key))
         entry_.fail(key, "a stopper has none: it bears and rubs as the feet of its body do");

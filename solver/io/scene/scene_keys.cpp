@@ -81,7 +81,7 @@ void add_run(std::vector<Key>& keys) {
     numbers.push_back(static_cast<int>(one.kind));
   }
   rows.word("integrator", named,
-            "of frames; auto is generalized-alpha. Rigid and elastic bodies take central differences")
+            "of frames; auto is generalized-alpha. The others are moved as the summary says")
       .absent(0)
       .only_in({"dynamic"});
   keys.back().numbers = numbers;

@@ -14,7 +14,8 @@ constexpr const char* k_keys[] = {"anchor", "fixing"};
 
 std::optional<io::Scene> without_anchors(const io::Scene& scene) {
   const auto is_in_place = [](bool in_place) { return in_place; };
-  if (scene.setup.wedges.empty() && std::ranges::none_of(scene.setup.parameters.anchors, is_in_place))
+  if (std::ranges::none_of(scene.setup.wedges, &Wedge::in_place) &&
+      std::ranges::none_of(scene.setup.parameters.anchors, is_in_place))
     return std::nullopt;
   io::Node root = io::parse_toml(scene.text, scene.name);
   std::erase_if(root.items,

@@ -11,7 +11,8 @@
 namespace topple::study {
 namespace {
 
-constexpr double k_across = 1 - 1e-6;  // cosine, of an edge that lies across a direction
+constexpr double k_across = 1 - 1e-6;   // cosine, of an edge that lies across a direction
+constexpr double k_least_share = 1e-6;  // likewise, of one that a push has a part across
 
 /// What the floor does when the body is `sunk` deeper than in the reference pose and leans by theta.
 struct Support {
@@ -214,6 +215,17 @@ std::optional<Standing> standing_towards(const Model& model, const Parameters& p
   for (const Edge& edge : edges_of(model.bodies[body]))
     if (edge.outward.dot(direction) > k_across) return towards(model, parameters, body, edge);
   return std::nullopt;
+}
+
+std::optional<PushedOver> pushed_over(const Model& model, const Parameters& parameters, int body,
+                                      const Vec3& direction) {
+  const std::vector<Edge> edges = edges_of(model.bodies[body]);
+  const auto way = [&](const Edge& edge) { return edge.distance / edge.outward.dot(direction); };
+  const Edge* first = nullptr;
+  for (const Edge& edge : edges)
+    if (edge.outward.dot(direction) > k_least_share && (!first || way(edge) < way(*first))) first = &edge;
+  if (!first) return std::nullopt;
+  return PushedOver{towards(model, parameters, body, *first), first->outward.dot(direction)};
 }
 
 double rest_depth(const Standing& body, const ContactLaw& law) {

@@ -37,6 +37,17 @@ Standing standing(const Model& model, const Parameters& parameters, int body);
 std::optional<Standing> standing_towards(const Model& model, const Parameters& parameters, int body,
                                          const Vec3& direction);
 
+/// Over the edge that a push along `direction`, unit, lifts it from first, and the share of the push that
+/// goes across that edge: there the steady push that lifts it is rigid_limit()/share, over g. None: the push
+/// has no part across an edge.
+struct PushedOver {
+  Standing edge;
+  double share;
+  double limit() const { return edge.rigid_limit() / share; }
+};
+std::optional<PushedOver> pushed_over(const Model& model, const Parameters& parameters, int body,
+                                      const Vec3& direction);
+
 /// Depth 1 - l/L of the deepest contact at rest. n like contacts evenly around the centre of gravity:
 ///   (W/(n alpha))^(1/q)
 /// Others lean until they balance; that the centre of gravity goes with the lean is left out.

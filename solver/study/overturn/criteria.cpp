@@ -111,9 +111,9 @@ std::string why_no_block(const Model& model, int body) {
   return why_not_standing(model, body);
 }
 
-bool slides_first(const Model& model, const Parameters& parameters, int body, const Standing& standing) {
+bool slides_first(const Model& model, const Parameters& parameters, int body, double limit) {
   const ContactLaw law = gripped(parameters.contact, model.bodies[body].grip);
-  return std::max(law.friction, law.friction_static) < standing.rigid_limit();
+  return std::max(law.friction, law.friction_static) < limit;
 }
 
 double west_acceleration(const Standing& body) {
@@ -146,7 +146,7 @@ Criteria criteria(const Setup& scene, const Axis& x, const Axis& y) {
                behind = standing_towards(model, scene.parameters, b, -shake.direction);
     if (!ahead || !behind) continue;
     const Standing& nearer = ahead->base < behind->base ? *ahead : *behind;
-    if (slides_first(model, scene.parameters, b, nearer)) continue;
+    if (slides_first(model, scene.parameters, b, nearer.rigid_limit())) continue;
     const double limit = out.bodies.empty() ? 0 : out.body.rigid_limit();
     if (!out.bodies.empty() && std::abs(nearer.rigid_limit() - limit) < k_same * limit) {
       out.bodies += ", " + model.bodies[b].name;

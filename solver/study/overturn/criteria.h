@@ -22,9 +22,9 @@ struct Criterion {
 /// "vase"". Empty: they do.
 std::string why_no_block(const Model& model, int body);
 
-/// Whether friction gives way before the edge of `standing`, of this body, lifts: it is below b/h. The
-/// criteria are of a block that does not slip.
-bool slides_first(const Model& model, const Parameters& parameters, int body, const Standing& standing);
+/// Whether friction gives way before an edge of a body lifts: it is below `limit`, that of a steady push over
+/// g. The criteria are of a block that does not slip.
+bool slides_first(const Model& model, const Parameters& parameters, int body, double limit);
 
 /// Acceleration at which a rigid block lifts an edge, m/s^2: g b/h (West; Milne 1885).
 double west_acceleration(const Standing& body);

@@ -35,7 +35,8 @@ ordered_json criteria_json(const BodyCriteria& criteria) {
   return {{"west", criteria.west},
           {"ishiyama", criteria.ishiyama},
           {"evaluation", criteria.evaluation},
-          {"corner_Hz", criteria.corner}};
+          {"corner_Hz", criteria.corner},
+          {"share_across_edge", criteria.share}};
 }
 
 }  // namespace

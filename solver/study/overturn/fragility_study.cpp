@@ -171,16 +171,15 @@ bool along_a_line(const Setup& setup) {
   });
 }
 
-/// Towards the edge that the shakes push it to, where they go along one line; else the nearest.
-Standing pushed(const Setup& setup, int body) {
-  const bool line = along_a_line(setup);
-  std::optional<Standing> least;
-  for (const double sense : {1., -1.})
-    if (const auto at = line ? standing_towards(setup.model, setup.parameters, body,
-                                                sense * setup.parameters.shakes.front().direction)
-                             : std::nullopt)
-      if (!least || at->rigid_limit() < least->rigid_limit()) least = at;
-  return least ? *least : standing(setup.model, setup.parameters, body);
+/// Over the edge that the shakes lift it from first, where they go along one line; else the nearest.
+PushedOver pushed(const Setup& setup, int body) {
+  std::optional<PushedOver> least;
+  if (along_a_line(setup))
+    for (const double sense : {1., -1.})
+      if (const auto at = pushed_over(setup.model, setup.parameters, body,
+                                      sense * setup.parameters.shakes.front().direction))
+        if (!least || at->limit() < least->limit()) least = at;
+  return least ? *least : PushedOver{standing(setup.model, setup.parameters, body), 1};
 }
 
 std::string why_no_criteria(const Setup& setup, int body) {
@@ -201,17 +200,19 @@ BodyCriteria criteria_of(const FragilityPlan& plan, int body, double frequency) 
   out.why_not =
       !acceleration && !velocity ? "the measure is neither PGA nor PGV" : why_no_criteria(setup, body);
   if (!out.why_not.empty()) return out;
-  const Standing at = pushed(setup, body);
-  if (slides_first(setup.model, setup.parameters, body, at)) {
+  const PushedOver pushed_at = pushed(setup, body);
+  const Standing& at = pushed_at.edge;
+  if (slides_first(setup.model, setup.parameters, body, pushed_at.limit())) {
     out.why_not = "slides before it lifts";
     return out;
   }
   out.along_a_line = along_a_line(setup);
+  out.share = pushed_at.share;
   out.corner = evaluation_frequency(at);
   const double median = evaluation_acceleration(at), turn = 2 * k_pi * frequency;
   // of a floor that goes by acceleration below the corner, by velocity above
   const double of_evaluation = frequency <= out.corner ? median : median * frequency / out.corner;
-  const double per = plan.levels.si * (velocity ? turn : 1);
+  const double per = plan.levels.si * (velocity ? turn : 1) * out.share;
   out.west = west_acceleration(at) / per;
   out.evaluation = of_evaluation / per;
   out.ishiyama = ishiyama_velocity(at) * turn / per;

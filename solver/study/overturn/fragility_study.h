@@ -95,7 +95,9 @@ struct FragilityCurve {
 struct BodyCriteria {
   std::string why_not;  ///< "": there are
   double west = 0, ishiyama = 0, evaluation = 0;
-  double corner = 0;         ///< Hz, of the evaluation
+  double corner = 0;  ///< Hz, of the evaluation
+  /// Of the motion, across the edge that it lifts the body from first: the criteria are of that share.
+  double share = 1;
   bool along_a_line = true;  ///< the floor moves so; else they are of the nearest edge, the measure of all
 };
 

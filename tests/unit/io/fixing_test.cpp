@@ -215,6 +215,13 @@ to = "floor"
   }
 }
 
+TEST(Fixing, a_stopper_that_is_not_in_place_lifts_nothing_and_is_known) {
+  const Scene scene = parse_scene(blocks(fixing("stopper", "back")), "s.toml", {"fixing.1.on=false"});
+  ASSERT_EQ(scene.setup.wedges.size(), 1u);
+  EXPECT_FALSE(scene.setup.wedges[0].in_place());
+  EXPECT_TRUE(scene.setup.starts[scene.setup.wedges[0].body].rotation.isZero(0));
+}
+
 // Where the wall is out of reach the front edge stands 10 mm higher than the back edge, 0.3 m behind it: what
 // tips the block over the front is the tangent of a greater angle, and it slides at mu g, as without wedges.
 TEST(Fixing, a_stopper_lifts_the_front_edge_and_rubs_as_feet_do) {

@@ -145,14 +145,20 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   Json s = summary(scene_, run_, "completed", 0);
   Json& body = s["bodies"][0];
   body["models"] = Json::array(
-      {{{"from_s", 0}, {"model", "elastic"}, {"reason", "stresses are wanted"}, {"error_estimate", 4e-5}}});
+      {{{"from_s", 0}, {"model", "elastic"}, {"reason", "stresses are wanted"}, {"error_estimate", 4e-4}}});
   body["impacts"] = 0;
   body["first_beyond_critical_s"] = 0.5;
-  EXPECT_NE(summary_table(s).find("off from a frame by about 0.004 % until it lands)\n"), std::string::npos)
-      << summary_table(s);
-  body["impacts"] = 78;
   EXPECT_NE(summary_table(s).find(
-                "by about 0.004 % until it first lands, however lightly; each landing enlarges that)\n"),
+                "off from a frame by about 0.04 % until it leans by half of its critical angle)\n"),
+            std::string::npos)
+      << summary_table(s);
+  body["models"][0]["error_estimate"] = 4e-9;  // its steps' errors are greater
+  EXPECT_NE(summary_table(s).find("by less than 0.1 % until it leans"), std::string::npos)
+      << summary_table(s);
+  body["models"][0]["error_estimate"] = 4e-4;
+  body["impacts"] = 78;
+  EXPECT_NE(summary_table(s).find("by about 0.04 % until it first lands, however lightly, or leans by half "
+                                  "of its critical angle; both enlarge that)\n"),
             std::string::npos);
 }
 

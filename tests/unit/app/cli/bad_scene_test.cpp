@@ -119,6 +119,13 @@ TEST_F(BadSceneTest, every_bad_scene_of_a_check_is_told) {
       << ended.err;
 }
 
+TEST_F(BadSceneTest, a_shake_that_rows_do_not_follow_is_warned_of) {
+  const Ended ended = topple({"check", "wardrobe", "--set", "shake.1.frequency=\"30 Hz\""});
+  EXPECT_NE(ended.err.find("shake 1 of 30 Hz is too fast for rows at 100 Hz"), std::string::npos)
+      << ended.err;
+  EXPECT_EQ(topple({"check", "wardrobe", "--set", "shake.1.frequency=\"20 Hz\""}).err, "");
+}
+
 TEST_F(BadSceneTest, an_error_in_a_kind_of_ones_own_is_that_of_its_file) {
   write_bytes(
       "kind.toml",

@@ -34,6 +34,7 @@ class ComputedTest : public ::testing::Test {
 
 TEST_F(ComputedTest, the_model_its_reason_and_what_moves_it_are_said) {
   start({"cabinet.free.model=auto", "run.want=[\"motion\",\"stress\"]", "run.duration=0.2"});
+  EXPECT_EQ(computed_in_words(*player_, 0), "now elastic (stresses are wanted): central differences");
   run_to_end();
   EXPECT_EQ(computed_in_words(*player_, 0), "now elastic (stresses are wanted): central differences");
   EXPECT_EQ(integrators_in_words(*player_), "of frames; at work now: central differences");

@@ -47,8 +47,22 @@ TEST_F(CriteriaTest, limits_are_those_of_the_contacts_of_the_scene) {
       study::standing_towards(model, parameters, 0, parameters.shakes.front().direction).value();
   EXPECT_NEAR(soft.west, standing.gravity * study::tipping_limit(standing, parameters.contact), 1e-9);
   EXPECT_NEAR(soft.west / k_gal, 94.9, 0.1);
+  start("paper-a", {"contact.alpha=\"500 kgf\""});  // 5 % below
+  EXPECT_NEAR(limits().west, standing.gravity * study::tipping_limit(standing, player_->parameters().contact),
+              1e-9);
   start("paper-a", {"contact.alpha=\"50000 kgf\""});
   EXPECT_EQ(limits().west, limits().rigid);
+}
+
+TEST_F(CriteriaTest, a_body_without_limits_has_the_reason_that_is_true) {
+  const auto why = [&](const std::vector<std::string>& changes) {
+    const io::Scene scene = io::load_scene("cabinet", changes);
+    const Parameters& parameters = scene.setup.parameters;
+    EXPECT_FALSE(has_limits(scene.setup.model, parameters, 0));
+    return why_no_limits(scene.setup.model, parameters, 0).english;
+  };
+  EXPECT_EQ(why({"shake.1.direction=[1, 1, 0]"}), window_words::k_shaken_askew.english);
+  EXPECT_EQ(why({"contact.friction=0.1"}), window_words::k_slides_before.english);
 }
 
 // On these contacts a steady push of 94.9 gal tips the cabinet, and a sine of 100 gal soon, as they say; on

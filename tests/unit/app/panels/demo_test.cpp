@@ -77,6 +77,16 @@ TEST_F(DemoTest, what_is_to_be_seen_runs_at_a_quarter_of_the_speed) {
 }
 INSTANTIATE_TEST_SUITE_P(All, DemoTest, ::testing::Values(0, 1));
 
+// The floor of a building was computed from its ground.
+TEST_F(DemoTest, the_ground_of_a_building_is_not_shaken_otherwise) {
+  start(std::make_shared<const io::Scene>(io::load_scene("paper-a", {"run.duration=0.1"})));
+  EXPECT_TRUE(can_shake_as_sine(*player_));
+  start(std::make_shared<const io::Scene>(io::load_scene(
+      "paper-a",
+      {"run.duration=0.1", "shake.1.building={storey = 2, of = 3, period = 0.5, damping = 0.05}"})));
+  EXPECT_FALSE(can_shake_as_sine(*player_));
+}
+
 TEST_F(DemoTest, what_does_not_come_about_is_said) {
   start(live_scene(k_rocking, {"run.duration=0.1"}));
   guide_.emplace(demos()[0], *player_);

@@ -66,6 +66,20 @@ TEST(Subject, section_forces_of_a_cantilever_are_those_of_theory) {
   EXPECT_TRUE(std::isnan(value(now, k_body, "left to overturn")));
 }
 
+// A portal that is clamped at both feet is pushed over: it leans, but its base stays, and a path has no time.
+TEST(Subject, a_bolted_body_does_not_slide_and_a_static_one_has_no_velocity) {
+  const io::Scene scene = io::load_scene("portal-pushover");
+  topple::Run run(scene.setup);
+  const io::FrameRow before = io::frame_row(run);
+  while (!run.over()) EXPECT_TRUE(run.advance().ok());
+  const io::FrameRow row = io::frame_row(run);
+  FrameContext now{scene.setup.model, scene.setup.parameters.gravity, k_on_floor, row, &before};
+  now.moves = false;
+  EXPECT_GT(value(now, k_body, "tilt"), 0.5);
+  EXPECT_EQ(value(now, k_body, "slide"), 0);
+  EXPECT_TRUE(std::isnan(value(now, k_body, "angular velocity")));
+}
+
 TEST(Subject, a_stress_beyond_yield_without_a_hinge_is_explained) {
   const Cantilever elastic;
   const FrameContext before{elastic.scene.setup.model, elastic.scene.setup.parameters.gravity, k_on_floor,

@@ -229,7 +229,7 @@ TEST(StepControl, members_that_close_are_met_in_time) {
     builder.close();
   }
   State state = start_state(model, {BodyStart{}, BodyStart{}});
-  state.candidate_pairs = {{1, 3}};
+  state.candidate_pairs = std::vector<ElementPair>{{1, 3}};
   const Parameters p = weightless();
   std::mt19937 rng(21);
   const double gap = height - model.sections[0].width, quarter = model.sections[0].width / 4;

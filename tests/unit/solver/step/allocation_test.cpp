@@ -256,10 +256,10 @@ TEST(Allocation, bodies_that_lie_on_each_other_take_no_memory) {
   ASSERT_TRUE(sim.advance(1000));
   int steps = 0;
   for (int i = 0; i < 1000; ++i) {
-    const std::vector<ElementPair> near = sim.state.candidate_pairs;
+    const CandidatePairs near = sim.state.candidate_pairs;
     const long before = allocations;
     ASSERT_TRUE(sim.advance().ok());
-    if (near.empty() || sim.state.candidate_pairs != near) continue;
+    if (near.empty() || !(sim.state.candidate_pairs == near)) continue;
     ASSERT_EQ(allocations, before) << "step " << i;
     ++steps;
   }
