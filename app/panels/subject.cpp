@@ -61,7 +61,13 @@ double tilt_value(const FrameContext& now, std::size_t index) {
   return now.row.body[index].tilt * k_degrees;
 }
 
+/// What supports hold does not slide.
 double slide_value(const FrameContext& now, std::size_t index) {
+  const std::vector<Support>& supports = now.model.supports;
+  if (std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
+        return now.model.node_body[support.node] == static_cast<int>(index);
+      }))
+    return k_no_value;
   return 1e3 * now.row.body[index].slide;
 }
 

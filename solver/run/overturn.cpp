@@ -66,7 +66,7 @@ bool reaches_base(const Model& model, int part) {
 /// What holds a body higher up may break, and lets it fall then.
 bool is_base_supported(const Model& model, int index) {
   const Body& body = model.bodies[index];
-  const double base = body.base_centre.z() + 1e-6 * (1 + body.reach);
+  const double base = body.support_polygon.front().z() + 1e-6 * (1 + body.reach);
   return std::any_of(model.supports.begin(), model.supports.end(), [&](const Support& support) {
     return model.node_body[support.node] == index && model.node_position[support.node].z() <= base;
   });
@@ -149,7 +149,6 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
 }
 
 double slide(const Model& model, int index, const BodyPose& pose, const Bearer& bearer, const BodyPose& on) {
-  if (is_base_supported(model, index)) return 0;
   return (place_on(model, index, pose, bearer.body, on) - bearer.place).head<2>().norm();
 }
 
