@@ -194,8 +194,7 @@ void warn_of_shakes(const std::vector<Shake>& shakes, double output_rate, std::v
     if (traits(shakes[k].kind).has_frequency && k_rows * shakes[k].frequency > output_rate)
       list.push_back(
           fmt::format("shake {} of {:.4g} Hz is too fast for rows at {:.4g} Hz: the floor is drawn and "
-                      "exported as another "
-                      "motion; run.output_rate = \"{:.4g} Hz\" follows it",
+                      "exported as another motion; run.output_rate = \"{:.4g} Hz\" follows it",
                       k + 1, shakes[k].frequency, output_rate, 2 * k_rows * shakes[k].frequency));
     if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
       list.push_back(

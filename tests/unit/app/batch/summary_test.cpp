@@ -141,6 +141,12 @@ TEST_F(SummaryTest, what_a_slight_change_may_topple_is_told) {
       << summary_table(s);
 }
 
+TEST_F(SummaryTest, a_stopper_that_is_not_in_place_is_told_so) {
+  const Wedge away{"stop", 0};
+  EXPECT_EQ(wedge_line(describe_wedge(scene_.setup.model, away)),
+            "fixing stop: stopper of " + scene_.setup.model.bodies[0].name + ", not in place");
+}
+
 TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   Json s = summary(scene_, run_, "completed", 0);
   Json& body = s["bodies"][0];
