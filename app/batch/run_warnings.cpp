@@ -189,13 +189,13 @@ void warn_of_energy(const Run& run, Warnings& list) {
 }  // namespace
 
 void warn_of_shakes(const std::vector<Shake>& shakes, double output_rate, std::vector<std::string>& list) {
-  constexpr double k_rows = 4;  // in a period, of which a curve is drawn
   for (std::size_t k = 0; k < shakes.size(); ++k) {
-    if (traits(shakes[k].kind).has_frequency && k_rows * shakes[k].frequency > output_rate)
+    if (!rows_follow(shakes[k], output_rate))
       list.push_back(
           fmt::format("shake {} of {:.4g} Hz is too fast for rows at {:.4g} Hz: the floor is drawn and "
                       "exported as another motion; run.output_rate = \"{:.4g} Hz\" follows it",
-                      k + 1, shakes[k].frequency, output_rate, 2 * k_rows * shakes[k].frequency));
+                      k + 1, highest_frequency(shakes[k]), output_rate,
+                      2 * k_rows_in_period * highest_frequency(shakes[k])));
     if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
       list.push_back(
           fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",

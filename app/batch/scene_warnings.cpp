@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "app/batch/run_warnings.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
+#include "solver/contact/nearest_places.h"
 #include "solver/contact/proximity.h"
 #include "solver/reduced/tipping.h"
 #include "solver/run/bearer.h"
@@ -19,11 +21,12 @@
 namespace topple::app {
 namespace {
 
-constexpr double k_corner = 0.2;   // of an edge, from its ends: there it hardly bends
-constexpr double k_within = 1e-3;  // m, a wall
-constexpr double k_early = 0.05;   // of the acceleration that lifts a side
-constexpr double k_hardly = 0.02;  // of it
-constexpr double k_upright = 0.7;  // of the normal of a floor
+constexpr double k_corner = 0.2;    // of an edge, from its ends: there it hardly bends
+constexpr double k_within = 1e-3;   // m, a wall
+constexpr double k_early = 0.05;    // of the acceleration that lifts a side
+constexpr double k_hardly = 0.02;   // of it
+constexpr double k_upright = 0.7;   // of the normal of a floor
+constexpr double k_pressed = 3e-3;  // m, of bodies beside each other
 
 /// Of the member of a body that is nearest to a point, and where along it, 0..1.
 struct Place {
@@ -109,6 +112,32 @@ void warn_of_falls(const Setup& setup, const State& start, std::vector<std::stri
   }
 }
 
+/// Bodies beside each other whose members press on each other before anything moves.
+void warn_of_overlaps(const Setup& setup, const State& start, std::vector<std::string>& list) {
+  const Model& model = setup.model;
+  std::map<std::pair<int, int>, double> deepest;  // m, of two bodies
+  NearSearch search(model);
+  for (const ElementPair& pair : search.find(start.position, 0)) {
+    if (panel_of(model, pair.b) != nullptr) continue;
+    const auto end = [&](int element, int k) -> const Vec3& {
+      return start
+          .position[static_cast<std::size_t>(model.elements[static_cast<std::size_t>(element)].node[k])];
+    };
+    const Vec3 between =
+        nearest_points(end(pair.a, 0), end(pair.a, 1), end(pair.b, 0), end(pair.b, 1)).between;
+    const double within = contact_length(model, pair) - between.norm();
+    if (within < k_pressed || std::abs(between.z()) > k_upright * between.norm()) continue;
+    double& most = deepest[{body_of(model, pair.a), body_of(model, pair.b)}];
+    most = std::max(most, within);
+  }
+  for (const auto& [bodies, within] : deepest)
+    list.push_back(
+        fmt::format("\"{}\" and \"{}\" start {:.2g} mm within each other: contact pushes them apart, and "
+                    "settling may find no rest",
+                    model.bodies[static_cast<std::size_t>(bodies.first)].name,
+                    model.bodies[static_cast<std::size_t>(bodies.second)].name, 1e3 * within));
+}
+
 /// To two digits.
 double rounded_up(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -183,6 +212,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_anchors(setup, start, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
+  warn_of_overlaps(setup, start, list);
   for (std::string words : {soft_contact_warning(setup, setup.parameters), bending_warning(setup)})
     if (!words.empty()) list.push_back(std::move(words));
   warn_of_shakes(setup.parameters.shakes, setup.run.output_rate, list);

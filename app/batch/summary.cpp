@@ -112,7 +112,7 @@ ordered_json anchors(const Run& run) {
     one["peak_force_N"] = number(o.peak_force);  // a step may end beyond the strength at which it broke
     one["final_force_N"] = number(o.tension);
     one["in_place"] = o.hold == AnchorHold::in_place;
-    one["slack"] = o.hold == AnchorHold::in_place && o.tension == 0 && can_slacken(model.anchors[k]);
+    one["slack"] = o.hold == AnchorHold::in_place && o.tension == 0 && io::can_slacken(model.anchors[k]);
     one["broke"] = o.broke.has_value();
     one["break_time_s"] = number(o.broke);
     out.push_back(one);
@@ -298,17 +298,24 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
   ordered_json bodies = ordered_json::array(), disagreements = ordered_json::array();
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const study::BodyError& e = errors[b];
-    ordered_json body{{"name", setup.model.bodies[b].name}, {"same_verdict", e.same_verdict()}};
+    ordered_json body{{"name", setup.model.bodies[b].name},
+                      {"same_verdict", e.same_verdict()},
+                      {"falls_refined", e.overturned_refined}};
     for (const Quantity& q : k_quantities) {
       const std::optional<double>& error = e.*q.error;
       body[q.key] = error ? number(*error / q.unit) : ordered_json(nullptr);
     }
     bodies.push_back(std::move(body));
-    if (!e.same_verdict())
-      disagreements.push_back(fmt::format(
-          "{} {}, but {} when refined", setup.model.bodies[b].name,
-          e.overturned ? fmt::format("overturns at {:.4f} s", *e.overturn_time) : "does not overturn",
-          e.overturned ? "not" : fmt::format("at {:.4f} s", *e.overturn_refined)));
+    if (e.same_verdict()) continue;
+    const auto falls = [&](double t, int impacts) {
+      return e.overturned == e.overturned_refined
+                 ? fmt::format("at {:.4f} s after {} impact{}", t, impacts, impacts == 1 ? "" : "s")
+                 : fmt::format("at {:.4f} s", t);
+    };
+    disagreements.push_back(
+        fmt::format("{} {}, but {} when refined", setup.model.bodies[b].name,
+                    e.overturned ? "overturns " + falls(*e.overturn_time, e.impacts) : "does not overturn",
+                    e.overturned_refined ? falls(*e.overturn_refined, e.impacts_refined) : "not"));
   }
   ordered_json out;
   for (const Quantity& q : k_quantities) {

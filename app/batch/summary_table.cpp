@@ -48,6 +48,9 @@ std::string estimate_in_words(const ordered_json& e) {
       part("overturning", "overturn_time_s", 1, "s") + part("peak tilt", "peak_tilt_deg", 1, "deg") +
       part("slide", "peak_slide_m", 1e3, "mm") + part("peak stress", "peak_stress_Pa", 1e-6, "MPa");
   words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
+  const bool fell = std::ranges::any_of(
+      e["bodies"], [](const ordered_json& body) { return !body["overturn_time_s"].is_null(); });
+  if (fell) words += "; of the stress of a landing it is unknown";
   return begin + words + "\n";
 }
 

@@ -78,6 +78,7 @@ void LiveWorker::begin() {
   if (!run_->status().ok()) {
     fail(run_->status());
     run_.reset();
+    show_unsettled();
     set(status_.kind);
     return;
   }
@@ -142,6 +143,17 @@ void LiveWorker::begin_branch() {
       report.rows.push_back(std::make_shared<const io::FrameRow>(frame));
   });
   start_ = std::move(start);
+}
+
+// Of a run that finds no rest: its bodies as the scene has them.
+void LiveWorker::show_unsettled() {
+  Setup unsettled = setup_;
+  unsettled.run.settle = false;
+  if (Run run(unsettled); run.status().ok())
+    for (const io::FrameRow& frame : io::Observer(status_.branch).observe(run).frames)
+      publish([&frame](LiveReport& report) {
+        report.rows.push_back(std::make_shared<const io::FrameRow>(frame));
+      });
 }
 
 void LiveWorker::record_start() {

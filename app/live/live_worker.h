@@ -122,6 +122,7 @@ class LiveWorker {
   void run_some();
   void record(io::Observation observation);
   void begin_branch();
+  void show_unsettled();
   void record_start();
   template <typename Add>
   void publish(Add add);

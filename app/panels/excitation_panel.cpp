@@ -21,29 +21,34 @@ constexpr LogAxis k_frequencies{0.1, 10}, k_amplitudes{10, 3000};  // Hz, gal
 constexpr std::size_t k_path = 400;                                // places kept
 constexpr double k_new_place = 0.002;                              // relative: less is the same place
 
-/// Greatest velocity that a record of acceleration leads to from rest, by the trapezoidal rule, m/s.
-double peak_velocity(const Accelerogram& record) {
-  Vec3 velocity = Vec3::Zero(), before = acceleration(record, 0);
-  double most = 0;
+/// Greatest acceleration of a record, m/s^2, and velocity that it leads to from rest, by the trapezoidal
+/// rule, m/s, both along a direction: the criteria know no other.
+struct RecordPeak {
+  double acceleration = 0, velocity = 0;
+};
+RecordPeak peak_along(const Accelerogram& record, const Vec3& direction) {
+  RecordPeak peak;
+  double velocity = 0, before = 0;
   const int steps = static_cast<int>(std::lround(record.duration / record.interval));
-  for (int k = 1; k <= steps; ++k) {
-    const Vec3 now = acceleration(record, k * record.interval);
-    velocity += record.interval / 2 * (before + now);
+  for (int k = 0; k <= steps; ++k) {
+    const double now = direction.dot(acceleration(record, k * record.interval));
+    if (k > 0) velocity += record.interval / 2 * (before + now);
     before = now;
-    most = std::max(most, velocity.norm());
+    peak.acceleration = std::max(peak.acceleration, std::abs(now));
+    peak.velocity = std::max(peak.velocity, std::abs(velocity));
   }
-  return most;
+  return peak;
 }
 
 ShakePlace place_of(const Shake& shake) {
-  const double level = shake.direction.head<2>().norm();
+  const Vec3 along(shake.direction.x(), shake.direction.y(), 0);
   const ShakeTraits& uses = traits(shake.kind);
   if (!uses.has_record)
     return {uses.has_shape ? traits(shake.shape).cycles / shake.duration : shake.frequency,
-            level * shake.amplitude};
-  const double velocity = peak_velocity(*shake.record);
-  return {velocity > 0 ? shake.record->peak / (2 * k_pi * velocity) : k_frequencies.high,
-          std::abs(shake.scale) * shake.record->peak};
+            along.norm() * shake.amplitude};
+  const RecordPeak peak = peak_along(*shake.record, along.stableNormalized());
+  return {peak.velocity > 0 ? peak.acceleration / (2 * k_pi * peak.velocity) : k_frequencies.high,
+          std::abs(shake.scale) * peak.acceleration};
 }
 
 /// A word in the middle of a region between two heights at a frequency, if it has room.

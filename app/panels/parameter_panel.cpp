@@ -252,12 +252,6 @@ void draw_slider(const Parameter& of) {
   of.row().slider(slider_of(of.key));
 }
 
-void draw_frequency(const Parameter& of) {
-  if (!traits(of.player.parameters().shakes[static_cast<std::size_t>(of.index)].kind).sweeps)
-    return draw_slider(of);
-  for (const Slider& look : k_sweep) of.row().slider(look);
-}
-
 void draw_type(const Parameter& of) {
   Row row = of.row();
   row.choice(say(k_type), k_type_about,
@@ -270,6 +264,17 @@ void write_below(const std::string& words) {
   ImGui::PushTextWrapPos(0);
   ImGui::TextDisabled("%s", words.c_str());
   ImGui::PopTextWrapPos();
+}
+
+/// What no row follows is said at once, not when the run is over.
+void draw_frequency(const Parameter& of) {
+  const Shake& shake = of.player.parameters().shakes[static_cast<std::size_t>(of.index)];
+  if (!traits(shake.kind).sweeps)
+    draw_slider(of);
+  else
+    for (const Slider& look : k_sweep) of.row().slider(look);
+  const double output_rate = of.player.scene().setup.run.output_rate;
+  if (!rows_follow(shake, output_rate)) write_below(say(k_too_fast_for_rows, output_rate));
 }
 
 /// How strong the record is then, which its factor does not tell.

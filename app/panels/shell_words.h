@@ -53,6 +53,10 @@ inline constexpr Phrase k_diverged{"A step failed", "計算が収束しません
 inline constexpr Phrase k_diverged_about{
     "The run stands at the last good state; where it failed is highlighted. Change a parameter and go on.",
     "直前の正しい状態で止まっています。失敗した要素は強調表示されています。パラメータを変えて続けられます。"};
+inline constexpr Phrase k_not_begun{"The run could not begin", "計算を始められませんでした"};
+inline constexpr Phrase k_not_begun_about{
+    "The furniture stands as the scene has it. Change the room (F2) or the scene file.",
+    "家具はシーンのとおりに置かれています。部屋（F2）またはシーンファイルを変更してください。"};
 inline constexpr Phrase k_program_failed{"The run ended by an error of the program",
                                          "プログラムの誤りで計算が終わりました"};
 inline constexpr Phrase k_halve{"Halve the step and retry", "時間刻みを半分にして再試行"};

@@ -207,8 +207,9 @@ inline constexpr Phrase k_did_not_come{
 // accuracy
 inline constexpr Phrase k_how_accurate{"How accurate is this?", "この計算の精度は？"};
 inline constexpr Phrase k_how_accurate_about{
-    "Computes the scene as it is now twice, at its steps and at half of them, beside the window",
-    "現在の設定のシーンを、通常の刻みと半分の刻みで2回計算して比べる"};
+    "Computes the scene as it is now twice beside the window: at its steps, and at half of them or, where "
+    "they adapt, at a tenth of the tolerance",
+    "現在の設定のシーンを2回計算して比べる：通常の刻みと、半分の刻み（自動刻みでは10分の1の許容誤差）"};
 inline constexpr Phrase k_estimating{"Computing: {0:.0f} %", "計算中：{0:.0f} %"};
 inline constexpr Phrase k_estimate_failed{"No estimate: {0}", "精度を評価できません：{0}"};
 inline constexpr Phrase k_sure_fall{"{0}: overturns at {1:.3f} s, ± {2:.3f} s.",
@@ -216,8 +217,8 @@ inline constexpr Phrase k_sure_fall{"{0}: overturns at {1:.3f} s, ± {2:.3f} s."
 inline constexpr Phrase k_sure_stay{"{0}: does not overturn; peak tilt {1:.2f}°, ± {2:.2f}°.",
                                     "{0}：転倒しない。最大傾斜 {1:.2f}°（誤差 ±{2:.2f}°）。"};
 inline constexpr Phrase k_unsure{
-    "{0}: a finer computation gives another verdict, so whether it overturns stays open.",
-    "{0}：刻みを細かくすると判定が変わるため、転倒するかどうかは決められません。"};
+    "{0}: a finer computation takes another course, so whether it overturns stays open.",
+    "{0}：刻みを細かくすると経過が変わるため、転倒するかどうかは決められません。"};
 inline constexpr Phrase k_estimate_note{
     "Errors of the time stepping alone, for the run from the start with the parameters as they were.",
     "開始時から現在のパラメーターで計算した場合の、時間積分による誤差のみを示します。"};

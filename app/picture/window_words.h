@@ -78,6 +78,8 @@ inline constexpr Phrase k_floor_pulse{"floor: pulse {0:g} s, {1:.4g} gal", "床�
 inline constexpr Phrase k_floor_record{"floor: record {0:.3g} s, peak {1:.4g} gal",
                                        "床：加速度記録 {0:.3g} s、最大 {1:.4g} gal"};
 inline constexpr Phrase k_still_at{", still {0:.0f} gal", "（移行中、現在 {0:.0f} gal）"};
+inline constexpr Phrase k_shake_from{", from {0:.4g} s on", "、{0:.4g} sから"};
+inline constexpr Phrase k_shake_over{", over since {0:.4g} s", "、{0:.4g} sに終了"};
 inline constexpr Phrase k_more_shakes{"{0}, and {1} more", "{0}、ほか{1}件"};
 inline constexpr Phrase k_now{"{0};  now {1:+.0f} gal, {2:+.0f} mm", "{0}　現在 {1:+.0f} gal、{2:+.0f} mm"};
 
@@ -281,6 +283,11 @@ inline constexpr Phrase k_slider_about{
     "{0}：{1}\n許容範囲 {2}、シーンの値 {3:.4g} {4}\nCtrl+クリックで数値入力"};
 inline constexpr Phrase k_key_about{"{0}: {1}", "{0}：{1}"};
 inline constexpr Phrase k_back_to_scene{"Back to the scene's value", "シーンの値に戻す"};
+inline constexpr Phrase k_too_fast_for_rows{
+    "Too fast for rows at {0:.4g} Hz: the floor is drawn and exported as another motion. "
+    "run.output_rate in the scene sets them.",
+    "{0:.4g} Hzの記録間隔には速すぎる揺れです。床の動きは別の動きとして描画・出力されます。"
+    "記録間隔はシーンのrun.output_rateで決まります。"};
 inline constexpr Phrase k_past_values{
     "These were the values at this instant. Continue from here (C) to change them.",
     "この時刻での値です。変更するには「ここから続行」（C）を実行してください。"};

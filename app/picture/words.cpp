@@ -12,6 +12,7 @@
 #include "app/picture/touching_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
+#include "solver/io/document/scene_document.h"
 #include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
@@ -123,6 +124,12 @@ std::string others_in_words(const Model& model, const Vec3& gravity, const io::F
   return standing == 1 ? say(k_other_stands) : say(k_others_stand, standing);
 }
 
+/// Of one that shakes nothing now.
+std::string when_in_words(const Shake& shake, double t) {
+  if (t < shake.start) return say(k_shake_from, shake.start);
+  return t > shake_end(shake) ? say(k_shake_over, shake_end(shake)) : "";
+}
+
 }  // namespace
 
 std::string title_in_words(const io::Scene& scene, const Parameters& parameters) {
@@ -131,7 +138,8 @@ std::string title_in_words(const io::Scene& scene, const Parameters& parameters)
     const auto& [key, index] = edited;
     return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
   });
-  return changed ? say(k_title_changed, scene.title) : scene.title;
+  return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, scene.title)
+                                                                : scene.title;
 }
 
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,
@@ -199,11 +207,7 @@ std::string anchor_type_in_words(const Anchor& anchor) {
 
 namespace {
 
-float state_of(const Anchor& anchor, const io::AnchorNumbers& now) {
-  return now.state == io::k_anchor_slack && !can_slacken(anchor) ? io::k_anchor_holds : now.state;
-}
-
-const Phrase& anchor_state(float state) {
+const Phrase& phrase_of_state(float state) {
   if (state == io::k_anchor_away) return k_away;
   if (state == io::k_anchor_slack) return k_slack;
   return state == io::k_anchor_holds ? k_holds : k_broken_anchor;
@@ -219,8 +223,8 @@ std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::si
                           : anchor.name.starts_with(type + "-") ? anchor.name.substr(type.size())
                                                                 : " " + anchor.name;
   const std::string line = anchor_type_in_words(anchor) + own + say(k_colon);
-  const float state = state_of(anchor, now);
-  if (state != io::k_anchor_holds || now.tension == 0) return line + say(anchor_state(state));
+  const float state = io::anchor_state(anchor, now);
+  if (state != io::k_anchor_holds || now.tension == 0) return line + say(phrase_of_state(state));
   const double force = std::abs(now.tension);
   const bool pin = anchor.length == 0;  // in any direction
   return line +
@@ -241,9 +245,10 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
   for (const float state : {io::k_anchor_holds, io::k_anchor_slack, io::k_anchor_broken, io::k_anchor_away}) {
     int count = 0;
     for (std::size_t k = 0; k < model.anchors.size(); ++k)
-      count += state_of(model.anchors[k], row.anchor[k]) == state;
+      count += io::anchor_state(model.anchors[k], row.anchor[k]) == state;
     if (count > 0)
-      counts += fmt::format("{}{} {}", counts.empty() ? "" : say(k_comma), count, say(anchor_state(state)));
+      counts +=
+          fmt::format("{}{} {}", counts.empty() ? "" : say(k_comma), count, say(phrase_of_state(state)));
   }
   lines.push_back(say(k_anchors, counts));
   return lines;
@@ -261,7 +266,7 @@ std::string shake_in_words(const Parameters& parameters, double t) {
   const auto* const words = ranges::find(k_shake_words, shake.kind, &ShakeWords::kind);
   const std::string one =
       (words == std::end(k_shake_words) ? traits(shake.kind).word : words->say_it(shake)) +
-      change_in_words(shake, t) + building_in_words(shake);
+      change_in_words(shake, t) + building_in_words(shake) + when_in_words(shake, t);
   const std::size_t more = parameters.shakes.size() - 1;
   return more > 0 ? say(k_more_shakes, one, more) : one;
 }

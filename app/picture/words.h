@@ -35,7 +35,7 @@ std::vector<std::string> anchors_in_words(const Model& model, const io::FrameRow
 /// "t = 1.23 s"; of a static run "load step 12 of 40, load factor 3.42".
 std::string instant_in_words(const Setup& setup, const io::FrameRow& row);
 
-/// "floor: 0.5 Hz, 190 gal" of the first shake; empty without one.
+/// "floor: 0.5 Hz, 190 gal" of the first shake, with when it begins or ended; empty without one.
 std::string shake_in_words(const Parameters& parameters, double t);
 
 }  // namespace topple::app

@@ -43,7 +43,7 @@ SceneText::SceneText(io::SceneSource source)
 
 void SceneText::set(const std::string& key, const std::string& value) {
   io::Node changed = root_;
-  io::apply_override(changed, key + "=" + value);
+  io::change(changed, {key + "=" + value});
   scene_ = std::make_shared<const io::Scene>(io::understand(changed, source_, io::write_toml(changed)));
   root_ = std::move(changed);
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/report/report_parts.h"
 #include "solver/study/common/refinement.h"
@@ -11,23 +12,55 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// One of a table of how often something came about in the trials that finished.
+struct Counted {
+  std::string name;
+  int runs;
+};
+
+std::string share_table(const ReportPage& page, const Phrase& what, const Phrase& came_about,
+                        const std::vector<Counted>& list, int runs) {
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& [name, hits] : list) {
+    const study::Interval interval = study::wilson(hits, runs);
+    rows.push_back(
+        {escaped(name), page.say(words::k_runs, hits, runs), shown(100. * hits / runs, 0) + " %",
+         fmt::format("{}\u2013{} %", shown(100 * interval.low, 0), shown(100 * interval.high, 0))});
+  }
+  return rows.empty() ? ""
+                      : page.table({page.say(what), page.say(came_about), page.say(words::k_share),
+                                    page.say(words::k_interval)},
+                                   rows);
+}
+
+/// In how many of the trials that finished.
+template <class F>
+int count_trials(const ReportPage& page, F holds) {
+  return static_cast<int>(std::ranges::count_if(
+      page.report().trials, [&](const study::Trial& trial) { return trial.finished && holds(trial); }));
+}
+
 /// How often the way from each place stays open; empty: there are no places.
 std::string ways_table(const ReportPage& page, int runs) {
   const Room& room = page.report().scene->setup.room;
-  if (room.ways() == 0) return "";
-  std::vector<std::vector<std::string>> rows;
-  for (std::size_t p = 0; p < room.places.size(); ++p) {
-    const auto open = static_cast<int>(std::ranges::count_if(
-        page.report().trials, [&](const study::Trial& trial) { return trial.finished && trial.open[p]; }));
-    const study::Interval interval = study::wilson(open, runs);
-    rows.push_back(
-        {escaped(room.places[p].name), page.say(words::k_runs, open, runs),
-         shown(100. * open / runs, 0) + " %",
-         fmt::format("{}\u2013{} %", shown(100 * interval.low, 0), shown(100 * interval.high, 0))});
-  }
-  return page.table({page.say(words::k_place), page.say(words::k_open_in), page.say(words::k_share),
-                     page.say(words::k_interval)},
-                    rows);
+  std::vector<Counted> list;
+  for (std::size_t p = 0; room.ways() > 0 && p < room.places.size(); ++p)
+    list.push_back(
+        {room.places[p].name, count_trials(page, [p](const study::Trial& trial) { return trial.open[p]; })});
+  return share_table(page, words::k_place, words::k_open_in, list, runs);
+}
+
+/// How often each anchor that may break does; empty: there is none.
+std::string anchors_table(const ReportPage& page, int runs) {
+  const Setup& setup = page.report().scene->setup;
+  const std::vector<Anchor>& anchors = setup.model.anchors;
+  const std::vector<bool>& in_place = setup.parameters.anchors;
+  std::vector<Counted> list;
+  for (std::size_t k = 0; k < anchors.size(); ++k)
+    if ((in_place.empty() || in_place[k]) && std::isfinite(anchors[k].strength))
+      list.push_back(
+          {anchors[k].name, count_trials(page, [k](const study::Trial& trial) { return trial.broke[k]; })});
+  return share_table(page, words::k_anchor_name, words::k_broke_in, list, runs);
 }
 
 std::string probability(ReportPage& page) {
@@ -43,7 +76,7 @@ std::string probability(ReportPage& page) {
   if (failed > 0)
     out += page.paragraph(page.say(words::k_runs_failed, failed, report.trials.size(), factors));
   if (runs == 0) return out;
-  std::vector<std::vector<std::string>> rows;
+  std::vector<Counted> list;
   DotChart chart;
   chart.x_label = page.text(words::k_factor);
   chart.x_from = 1 - report.spread, chart.x_to = 1 + report.spread;
@@ -56,17 +89,13 @@ std::string probability(ReportPage& page) {
       row.x.push_back(trial.factor);
       row.filled.push_back(trial.overturned[b]);
     }
-    const study::Interval interval = study::wilson(hits, runs);
-    rows.push_back(
-        {escaped(page.name(b)), page.say(words::k_runs, hits, runs), shown(100. * hits / runs, 0) + " %",
-         fmt::format("{}\u2013{} %", shown(100 * interval.low, 0), shown(100 * interval.high, 0))});
+    list.push_back({page.name(b), hits});
     chart.rows.push_back(std::move(row));
   }
-  out += page.table({page.say(words::k_body), page.say(words::k_overturned_in), page.say(words::k_share),
-                     page.say(words::k_interval)},
-                    rows);
+  out += share_table(page, words::k_body, words::k_overturned_in, list, runs);
   out += page.figure(svg_dots(chart), page.say(words::k_dots, page.next_figure()));
-  return out + ways_table(page, runs) + page.paragraph(page.say(words::k_interval_note), "note");
+  return out + ways_table(page, runs) + anchors_table(page, runs) +
+         page.paragraph(page.say(words::k_interval_note), "note");
 }
 
 std::string disagreements(const ReportPage& page, const ordered_json& estimate) {
@@ -77,9 +106,10 @@ std::string disagreements(const ReportPage& page, const ordered_json& estimate) 
     const auto body =
         std::ranges::find_if(page.bodies(), [&](const ordered_json& b) { return b["name"] == name; });
     if (!out.empty()) out += "; ";
-    out += (*body)["overturned"].get<bool>()
-               ? page.text(words::k_open_falls, name, shown((*body)["overturn_time_s"].get<double>(), 3))
-               : page.text(words::k_open_stays, name);
+    const bool fell = (*body)["overturned"].get<bool>();
+    out += !fell ? page.text(words::k_open_stays, name)
+                 : page.text(e.value("falls_refined", false) ? words::k_open_impacts : words::k_open_falls,
+                             name, shown((*body)["overturn_time_s"].get<double>(), 3));
   }
   return out;
 }

@@ -205,6 +205,26 @@ std::string holding_table(ReportPage& page) {
 
 }  // namespace
 
+namespace {
+
+/// Bodies that no anchor holds, and that fare differently without those of the others.
+std::string differ_unheld(const ReportPage& page, const ordered_json& without) {
+  const Model& model = page.report().scene->setup.model;
+  std::string names;
+  for (std::size_t b = 0; b < page.bodies().size(); ++b) {
+    const auto holds = [&](const Anchor& anchor) {
+      return anchor.body == static_cast<int>(b) || anchor.other.body == static_cast<int>(b);
+    };
+    if (page.bodies()[b]["overturned"] == without["bodies"][b]["overturned"] ||
+        std::ranges::any_of(model.anchors, holds))
+      continue;
+    names += (names.empty() ? "" : ", ") + page.name(b);
+  }
+  return names;
+}
+
+}  // namespace
+
 std::string anchors_section(ReportPage& page) {
   std::string out = holding_table(page);
   if (!page.report().without_anchors) return page.section(words::k_anchors_away, out);
@@ -233,7 +253,10 @@ std::string anchors_section(ReportPage& page) {
   std::vector<std::string> head{page.say(words::k_body)};
   for (const Phrase* what : {&words::k_verdict, &words::k_overturn_time, &words::k_tilt, &words::k_slide})
     for (const std::string& cell : pair(*what)) head.push_back(cell);
-  return page.section(words::k_anchors, out + page.table(head, rows));
+  out += page.table(head, rows);
+  if (const std::string names = differ_unheld(page, without); !names.empty())
+    out += page.paragraph(page.say(words::k_unheld_differ, names), "note");
+  return page.section(words::k_anchors, out);
 }
 
 }  // namespace topple::app

@@ -51,8 +51,8 @@ inline constexpr Phrase k_sensitive{
     "single run.",
     "この結果は揺れのわずかな違いで変わる。1回の計算結果ではなく、第{0}節の確率で判断すること。"};
 inline constexpr Phrase k_open{
-    "A finer computation gives another verdict (section {0}); the single run decides nothing.",
-    "計算の刻みを細かくすると判定が変わる（第{0}節）。1回の計算結果だけでは判断できない。"};
+    "A finer computation takes another course (section {0}); the single run decides nothing.",
+    "計算の刻みを細かくすると経過が変わる（第{0}節）。1回の計算結果だけでは判断できない。"};
 inline constexpr Phrase k_not_validated{
     "Not validated against experiment. The program is checked against theory and published numbers "
     "(topple verify); no shaking-table test stands behind this page.",
@@ -197,6 +197,7 @@ inline constexpr Phrase k_hit_at{"{0} ({1} s)", "{0}（{1}秒）"};
 inline constexpr Phrase k_open_way{"open", "通れる"};
 inline constexpr Phrase k_no_way{"closed", "通れない"};
 inline constexpr Phrase k_open_in{"way out open in", "出口まで通れる"};
+inline constexpr Phrase k_broke_in{"broke in", "破断した計算"};
 inline constexpr Phrase k_plan_figure{"Figure {0}: the room in plan at the end of the run, to scale.",
                                       "図{0}：計算終了時の部屋の平面図（縮尺どおり）。"};
 inline constexpr Phrase k_key_fallen{"overturned, as it is at the end", "転倒した家具（終了時）"};
@@ -236,6 +237,12 @@ inline constexpr Phrase k_assumed_fixings{
     "for no product.",
     "名称で指定した固定具の剛性と強度は、入力にあればその値、なければ仮定値であり、特定の製品を表すものではな"
     "い。"};
+inline constexpr Phrase k_unheld_differ{
+    "No anchor holds {0}: what differs there comes of knocks by what they hold, or of small differences that "
+    "grow; the "
+    "probabilities tell more.",
+    "{0}は固定されていない。この違いは、固定された家具との衝突か、成長したわずかな差によるものであり、"
+    "確率の方が信頼できる。"};
 inline constexpr Phrase k_with{"with anchors", "固定あり"};
 inline constexpr Phrase k_without{"without anchors", "固定なし"};
 inline constexpr Phrase k_without_failed{"The run without anchors failed: {0}",
@@ -316,22 +323,27 @@ inline constexpr Phrase k_no_probability{
     "The floor does not shake, so there is no input to vary; no probability is given.",
     "床が揺れないため、変化させる入力がなく、確率は求めない。"};
 inline constexpr Phrase k_error{"Numerical error", "数値誤差"};
-inline constexpr Phrase k_halved{"half the step ({0} ms)", "半分の時間刻み（{0} ms）"};
+inline constexpr Phrase k_halved{"half the step ({0} ms, and half the parts of rigid and elastic bodies)",
+                                 "半分の時間刻み（{0} ms。剛体・弾性体の内部刻みも半分）"};
 inline constexpr Phrase k_tightened{"a tenth of the tolerance ({0})", "10分の1の許容誤差（{0}）"};
 inline constexpr Phrase k_error_text{
     "The run was repeated with {0}. The stated error, ± in section {1}, is {2} times the difference between "
     "the two: "
     "the error of a method of first order, to which contacts that open and close bring any. It is an "
     "estimate of the time "
-    "stepping alone, not of the model.",
+    "stepping alone, not of the model. None is stated for the stress of what fell: that of a landing follows "
+    "no order.",
     "計算を{0}で繰り返した。第{1}節の±は両者の差の{2}倍である（"
     "接触の開閉があると、どの解法も1次精度となるため）。"
-    "これは時間積分の誤差の推定であり、モデル化の誤差を含まない。"};
-inline constexpr Phrase k_error_open{
-    "The two runs part in the verdict, so no number can be given for it: {0}.",
-    "両者で判定が異なるため、誤差を数値で示すことはできない：{0}。"};
+    "これは時間積分の誤差の推定であり、モデル化の誤差を含まない。"
+    "転倒した家具の応力の誤差は示さない（衝突時の応力の誤差には次数がないため）。"};
+inline constexpr Phrase k_error_open{"The two runs part, so no number can be given for it: {0}.",
+                                     "両者の経過が異なるため、誤差を数値で示すことはできない：{0}。"};
 inline constexpr Phrase k_open_falls{"“{0}” overturns at {1} s, but stays standing in the finer run",
                                      "「{0}」は{1}秒で転倒するが、細かい計算では転倒しない"};
+inline constexpr Phrase k_open_impacts{
+    "“{0}” overturns at {1} s after another number of impacts than in the finer run",
+    "「{0}」は{1}秒で転倒するが、それまでの衝突回数が細かい計算と異なる"};
 inline constexpr Phrase k_open_stays{"“{0}” stays standing, but overturns in the finer run",
                                      "「{0}」は転倒しないが、細かい計算では転倒する"};
 inline constexpr Phrase k_error_failed{"The finer run failed ({0}); the error is not known.",

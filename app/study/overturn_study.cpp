@@ -86,6 +86,7 @@ Findings overturn_findings(const study::OverturnPlan& plan, const study::Overtur
       .title = "What overturns in " + plan.scene.name + " over " + plan.x.key + " and " + plan.y.key,
       .units = {{"x", plan.x.unit},
                 {"y", plan.y.unit},
+                {"verdict", "that of most runs that ended; the probability tells how many"},
                 {"probability", "1, of runs in which a body overturns; low, high: 95 % by Wilson's score"},
                 {"open", "runs after which a way leads from a place to a door; low, high: as of probability"},
                 {"overturn_time_s", "s, median of the first overturning; early, late: quantiles 0.1 and 0.9"},

@@ -18,11 +18,6 @@ inline const char* anchor_type(const Anchor& anchor) {
   return row_of(io::k_anchor_types, anchor.type).word;
 }
 
-/// Whether it may stand in place without a force and hold nothing: a bracket pulls and pushes.
-inline bool can_slacken(const Anchor& anchor) {
-  return anchor.type != Anchor::Type::bracket;
-}
-
 /// Its rows go by load step and load factor, not by time.
 inline bool is_static(const Setup& setup) {
   return setup.run.analysis == Analysis::statics;

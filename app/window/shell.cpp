@@ -215,8 +215,16 @@ void Shell::watch_trouble() {
   const bool failed = status.kind == LiveStatus::Kind::failed, ended = status.kind == LiveStatus::Kind::ended;
   const std::string trouble = failed || ended ? status.message : "";
   if (trouble == std::exchange(shown_trouble_, trouble) || trouble.empty()) return;
-  message_ = {say(failed ? ww::k_diverged : ww::k_program_failed), trouble,
-              failed ? say(ww::k_diverged_about) : "", session_->player().can_halve_step()};
+  const auto row = session_->player().row();
+  const bool begun = (row && row->step > 0) || status.element >= 0;
+  message_ = {say(!failed ? ww::k_program_failed
+                  : begun ? ww::k_diverged
+                          : ww::k_not_begun),
+              trouble,
+              !failed ? ""
+              : begun ? say(ww::k_diverged_about)
+                      : say(ww::k_not_begun_about),
+              session_->player().can_halve_step()};
 }
 
 bool Shell::covered() const {

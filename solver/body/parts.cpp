@@ -22,15 +22,10 @@ constexpr std::size_t k_bodies_per_part = 16;  // of few unknowns: some microsec
 void Forces::add(const MemberContacts& found, std::span<const MemberPair> pairs) {
   const std::size_t first = members.size();
   for (const MemberTouch& touch : found.touches) members.push_back(member_force(touch, pairs[touch.pair]));
-  auto last = found.touches.begin();  // blends are in the order of the touches
-  for (const MemberBlend& blend : found.blends) {
-    const auto touch =
-        std::find_if(last, found.touches.end(), [&](const MemberTouch& t) { return t.pair == blend.pair; });
-    if (touch == found.touches.end()) continue;
-    last = touch;
-    members[first + (touch - found.touches.begin())].force -=
-        blend.slope * blend.surplus * (blend.by_sine[0] + blend.by_sine[1]);  // of the nodes of a
-  }
+  for (const MemberBlend& blend : found.blends)
+    if (blend.touch >= 0)
+      members[first + blend.touch].force -=
+          blend.slope * blend.surplus * (blend.by_sine[0] + blend.by_sine[1]);  // of the nodes of a
 }
 
 Parts::Parts(const Model& model)

@@ -61,10 +61,18 @@ struct MemberTouch {
   double weight;                  ///< of its U in E, kappa or (1 - kappa)/4 or w, times member_share
   double s, t;                    ///< where, see NearestPoints; of a panel t and u are PanelPlace::r
   double u = 0;
+  int same = -1;        ///< first of those that it stands for, in MemberContacts::same
   bool s_free, t_free;  ///< see NearestPoints
   double l;             ///< m, along the normal; <= 0: they went through each other
   ContactInput input;   ///< its normal, from b to a, keeps its side while l goes through zero
   ContactOutput out;
+};
+
+/// A place of another pair where a touch is, too: members meet in a corner.
+struct SameTouch {
+  int pair, place;  ///< see MemberTouch
+  double weight;    ///< its part of MemberTouch::weight
+  int next;         ///< in MemberContacts::same; -1: none
 };
 
 /// `law` with the touch's share of alpha.
@@ -78,6 +86,7 @@ inline ContactLaw weighted(ContactLaw law, const MemberTouch& touch) {
 /// Of a tip over a panel by w, without the derivatives of w's slope: -U dw/dx.
 struct MemberBlend {
   int pair;
+  int touch = -1;                  ///< the first of the pair's that is listed; -1: none
   double slope, curvature;         ///< kappa' and kappa''; of a panel 1 and 0
   double surplus;                  ///< J, the bracket, U
   PairVector by_sine, by_surplus;  ///< derivatives of sin^2 or w, and of the bracket or U, by the nodes
@@ -88,12 +97,37 @@ struct MemberContacts {
   std::vector<MemberTouch> touches;
   std::vector<MemberBlend> blends;
   std::vector<MemberTouch> ahead;  ///< open by no more than MemberPair::ahead, without forces
+  std::vector<SameTouch> same;     ///< of touches that stand for several
 
   void clear() {
     touches.clear();
     blends.clear();
     ahead.clear();
+    same.clear();
   }
+  /// f(pair, place) of a touch and of those that it stands for.
+  template <class F>
+  void each_place(const MemberTouch& touch, F f) const {
+    f(touch.pair, touch.place);
+    for (int k = touch.same; k >= 0; k = same[k].next) f(same[k].pair, same[k].place);
+  }
+};
+
+/// A place where a pair may touch. s, t: see MemberTouch.
+struct PairPlace {
+  int pair, place;
+  double weight, s, t;
+  double approach2;  ///< m^2, bound of the square by which it has come nearer since the start
+  double mass;       ///< kg, see ContactInput::mass; of several that with which they are damped as together
+  int same = -1;     ///< see MemberTouch
+  int other = 0;     ///< of a place at a node the node or ~element that it is nearest to
+  int before = -1;   ///< the place at the same node that was found before it; -1: none
+};
+
+/// Kept from one search for what touches to the next.
+struct PairPlaces {
+  std::vector<PairPlace> all;
+  std::vector<int> newest;  ///< per node of the system, of `all` there; -1: none
 };
 
 /// Relative motion of a touch: sum share x over the nodes of its pair.
@@ -118,16 +152,19 @@ double nearest_gap(const MemberPair& pair, const PairVector& x);
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found);
-/// The same of some of the pairs, in ascending order; with_forces false: MemberTouch::out may be missing.
-void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
+/// The same of some of the pairs, in ascending order. Pairs that touch at the same two places, as those of
+/// the members that meet in two corners do, have one touch with the sum of their weights: of rigid bodies it
+/// moves as they do. All of `which` are looked at, and of pairs of elements `start` tells the side.
+/// with_forces false: MemberTouch::out may be missing.
+void find_merged_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const int> which, std::span<const Vec3> position,
                           std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
-                          MemberContacts& found);
+                          PairPlaces& places, MemberContacts& found);
 
 /// What touches the panel of pair number `index`, added to `found`.
 void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, int index,
                         std::span<const Vec3> position, std::span<const Vec3> velocity,
-                        std::span<const Vec3> start, MemberContacts& found);
+                        std::span<const Vec3> start, bool with_forces, MemberContacts& found);
 
 /// Adds the forces on the nodes.
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);

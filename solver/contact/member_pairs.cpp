@@ -37,7 +37,8 @@ std::vector<MemberPair> member_pairs(const Model& model, std::span<const Element
   std::vector<ElementPair> first;
   for (const ElementPair& candidate : candidates) {
     const auto [a, b] = segments_of(candidate);
-    first.push_back({a.element, b.element});
+    const ElementPair pair{a.element, b.element};
+    if (first.empty() || first.back() != pair) first.push_back(pair);
   }
   ranges::sort(first);
   first.erase(std::unique(first.begin(), first.end()), first.end());

@@ -1,6 +1,7 @@
 // Which members touch, and with what forces: four at a time.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/contact/coulomb.h"
 #include "solver/contact/member_contact.h"
@@ -41,9 +42,10 @@ Vec3 between_at(int place, const PairVector& x) {
 
 class TouchFinder {
  public:
+  /// merged: see find_merged_contacts; null: each pair has its own touches.
   TouchFinder(const ContactLaw& law, std::span<const MemberPair> pairs, std::span<const Vec3> position,
               std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
-              MemberContacts& found)
+              PairPlaces* merged, MemberContacts& found)
       : law_(law),
         with_forces_(with_forces),
         in_packs_(traits(law).in_packs),
@@ -53,35 +55,43 @@ class TouchFinder {
         position_(position),
         velocity_(velocity),
         start_(start),
-        found_(found) {}
+        merged_(merged),
+        found_(found) {
+    if (merged_ == nullptr) return;
+    merged_->all.clear();
+    merged_->newest.assign(position.size(), -1);
+  }
 
   void look_at(int i) {
     const MemberPair& pair = pairs_[i];
-    const double approach2 = greatest_approach2(pair);
-    if (is_beyond(pair, approach2)) return;
-    pairs_ahead_.push_back({i, 0, 0, 0, 0, approach2});
+    double approach2 = 0;
+    if (merged_ == nullptr) {
+      approach2 = greatest_approach2(pair, [&](int k) { return pair.start[k]; });
+      if (is_beyond(pair, approach2)) return;
+    }
+    pairs_ahead_.push_back({i, 0, 0, 0, 0, approach2, pair.mass});
     if (pairs_ahead_.full()) look();
   }
   /// After the last one.
   void end() {
     look();
+    if (merged_ != nullptr)
+      for (PairPlace& place : merged_->all) {
+        const MemberPair& pair = pairs_[place.pair];
+        place.approach2 = greatest_approach2(pair, [&](int k) { return start_[pair.node[k]]; });
+        evaluate(place);
+      }
     touch();
     complete_blends();
   }
 
  private:
-  // A place where a pair may touch. s, t: known where they are not found from each other.
-  struct Place {
-    int pair, place;
-    double weight, s, t;
-    double approach2;  // m^2, greatest_approach2
-  };
   struct FourPlaces {
-    std::array<Place, 4> at;
+    std::array<PairPlace, 4> at;
     int count = 0;
 
     bool full() const { return count == 4; }
-    void push_back(const Place& place) { at[count++] = place; }
+    void push_back(const PairPlace& place) { at[count++] = place; }
     // f(place) of each lane; what is not there repeats the first
     template <class F>
     Four each(F f) const {
@@ -92,11 +102,12 @@ class TouchFinder {
     unsigned lanes() const { return (1u << count) - 1; }
   };
 
-  double reach_of(const Place& place) const { return pairs_[place.pair].L + pairs_[place.pair].ahead; }
+  double reach_of(const PairPlace& place) const { return pairs_[place.pair].L + pairs_[place.pair].ahead; }
 
-  // Bound of the square by which they have come nearer since MemberPair::start, m^2.
-  double greatest_approach2(const MemberPair& pair) const {
-    const auto moved = [&](int k) { return (position_[pair.node[k]] - pair.start[k]).squaredNorm(); };
+  // Bound of the square by which they have come nearer since the start, m^2. start: of a node.
+  template <class Start>
+  double greatest_approach2(const MemberPair& pair, Start start) const {
+    const auto moved = [&](int k) { return (position_[pair.node[k]] - start(k)).squaredNorm(); };
     return 2 * (std::max(moved(0), moved(1)) + std::max(moved(2), moved(3)));
   }
 
@@ -116,44 +127,99 @@ class TouchFinder {
     const Vec3* const x = position_.data();
     const Points a0 = gather(x, n[0]), b0 = gather(x, n[2]);
     const Points u = gather(x, n[1]) - a0, v = gather(x, n[3]) - b0, r = a0 - b0;
+    const Four reach = ahead.each([&](const PairPlace& of) { return reach_of(of); });
+    const auto is_near = [&](Four s, Four t) {
+      const Points between = r + s * u - t * v;
+      return bits(dot(between, between) < reach * reach);
+    };
     const auto [s, t] = nearest_places(u, v, r);
-    const Points between = r + s * u - t * v;
-    const Four reach = ahead.each([&](const Place& of) { return reach_of(of); });
-    const unsigned near = bits(dot(between, between) < reach * reach) & ahead.lanes();
+    const unsigned near = is_near(s, t) & ahead.lanes();
     if (near != 0) {
       const Points across = cross(u, v);
-      const Four sine = dot(across, across) / (dot(u, u) * dot(v, v) * Four(k_parallel));
-      for (int k = 0; k < ahead.count; ++k)
-        if (near >> k & 1) add_places(ahead.at[k], std::min(sine[k], 1.), s[k], t[k]);
+      const Four uu = dot(u, u), vv = dot(v, v);
+      const Four exact = dot(across, across) / (uu * vv * Four(k_parallel)),
+                 sine = choose(exact < Four(1), exact, Four(1));
+      std::array<Four, 5> at_s{s, Four(0), Four(1), Four(0), Four(0)},
+          at_t{t, Four(0), Four(0), Four(0), Four(1)};
+      std::array<unsigned, 5> near_at{near, 0, 0, 0, 0};
+      if ((bits(sine < Four(1)) & near) != 0)
+        for (int place = 1; place < 5; ++place) {
+          Four &own_s = at_s[place], &own_t = at_t[place];
+          if (place < 3)
+            own_t = within_segment(dot(r + own_s * u, v) / vv);
+          else
+            own_s = within_segment(dot(own_t * v - r, u) / uu);
+          near_at[place] = is_near(own_s, own_t) & near;
+        }
+      for (int k = 0; k < ahead.count; ++k) {
+        if (!(near >> k & 1)) continue;
+        const double kappa = kappa_of(sine[k]), share = law_.member_share;
+        PairPlace& at = ahead.at[k];
+        for (int place = kappa > 0 ? 0 : 1; place < (kappa < 1 ? 5 : 1); ++place) {
+          if (!(near_at[place] >> k & 1)) continue;
+          at.place = place;
+          at.weight = place == 0 ? share * kappa : share * (1 - kappa) / 4;
+          at.s = at_s[place][k];
+          at.t = at_t[place][k];
+          add(at);
+        }
+        if (kappa > 0 && kappa < 1 && stores_energy_) add_blend(at.pair, sine[k]);
+      }
     }
     ahead.count = 0;
   }
 
-  void add_places(Place at, double sine, double s, double t) {
-    const double kappa = sine < k_aligned ? 0 : sine * sine * (3 - 2 * sine);
-    const auto add = [&](int place, double weight, double own_s, double own_t) {
-      at.place = place;
-      at.weight = weight;
-      at.s = own_s;
-      at.t = own_t;
-      places_.push_back(at);
-      if (places_.full()) touch();
-    };
-    const double share = law_.member_share, rest = share * (1 - kappa) / 4;
-    if (kappa > 0) add(0, share * kappa, s, t);
-    if (kappa == 1) return;
-    add(1, rest, 0, 0);
-    add(2, rest, 1, 0);
-    add(3, rest, 0, 0);
-    add(4, rest, 0, 1);
-    if (kappa == 0 || !stores_energy_) return;
+  static double kappa_of(double sine) { return sine < k_aligned ? 0 : sine * sine * (3 - 2 * sine); }
+
+  void add_blend(int pair, double sine) {
+    const double share = law_.member_share;
     MemberBlend& blend = found_.blends.emplace_back();
-    blend.pair = at.pair;
+    blend.pair = pair;
     blend.by_sine.fill(Vec3::Zero());
     blend.by_surplus.fill(Vec3::Zero());
     blend.slope = share * 6 * sine * (1 - sine) / k_parallel;
     blend.curvature = share * (6 - 12 * sine) / (k_parallel * k_parallel);
     blend.surplus = 0;
+  }
+
+  void add(PairPlace place) {
+    if (merged_ == nullptr)
+      evaluate(place);
+    else if (!merge(place))
+      merged_->all.push_back(place);
+  }
+
+  void evaluate(const PairPlace& place) {
+    places_.push_back(place);
+    if (places_.full()) touch();
+  }
+
+  // Whether another pair has that place already; else it is known at its node, if it is at one.
+  bool merge(PairPlace& place) {
+    const MemberPair& pair = pairs_[place.pair];
+    const int a = place.s == 0   ? pair.node[0]
+                  : place.s == 1 ? pair.node[1]
+                                 : -1,
+              b = place.t == 0   ? pair.node[2]
+                  : place.t == 1 ? pair.node[3]
+                                 : -1;
+    if (a < 0 && b < 0) return false;
+    place.other = a < 0 ? ~pair.elements.a : b < 0 ? ~pair.elements.b : b;
+    std::vector<PairPlace>& all = merged_->all;
+    int& newest = merged_->newest[a < 0 ? b : a];
+    for (int k = newest; k >= 0; k = all[k].before) {
+      PairPlace& there = all[k];
+      if (there.other != place.other || pairs_[there.pair].L != pair.L) continue;
+      found_.same.push_back({place.pair, place.place, place.weight, there.same});
+      there.same = static_cast<int>(found_.same.size()) - 1;
+      // of stick springs the damping adds up, which goes with the root of weight and mass
+      const double root = std::sqrt(there.weight * there.mass) + std::sqrt(place.weight * place.mass);
+      there.weight += place.weight;
+      there.mass = root * root / there.weight;
+      return true;
+    }
+    place.before = std::exchange(newest, static_cast<int>(all.size()));
+    return false;
   }
 
   // What touches at the places found.
@@ -164,69 +230,75 @@ class TouchFinder {
     const Vec3* const x = position_.data();
     const Points a0 = gather(x, n[0]), a1 = gather(x, n[1]), b0 = gather(x, n[2]), b1 = gather(x, n[3]);
     const Points u = a1 - a0, v = b1 - b0, r = a0 - b0;
-    const Four place = places.each([](const Place& of) { return of.place; });
-    const Four::Mask end_of_a = (Four(0) < place) & (place < Four(3)), end_of_b = Four(2) < place;
-    Four s = places.each([](const Place&of) { return of.s; }),
-         t = places.each([](const Place&of) { return of.t; });
-    t = choose(end_of_a, within_segment(dot(r + s * u, v) / dot(v, v)), t);
-    s = choose(end_of_b, within_segment(dot(t * v - r, u) / dot(u, u)), s);
+    const Four s = places.each([](const PairPlace&of) { return of.s; }),
+               t = places.each([](const PairPlace&of) { return of.t; });
     const Points between = r + s * u - t * v;
-    const Four L = places.each([&](const Place& of) { return pairs_[of.pair].L; });
-    const Four square = dot(between, between),
-               reach = places.each([&](const Place&of) { return reach_of(of); });
-    const unsigned near = bits(square < reach * reach) & places.lanes(),
-                   touching = bits(square < L * L) & near;
-    if (near != 0) {
-      Four l = sqrt(square);
-      Points normal = Four(1) / l * between;
-      tell_sides(places, near, between, l, normal);
-      const std::array<Four, 4> share{1 - s, s, t - 1, -t};
-      const auto by_share = [&](auto at) {
-        return share[0] * at(0) + share[1] * at(1) + share[2] * at(2) + share[3] * at(3);
-      };
-      const Vec3 *const x0 = start_.data(), *const v0 = velocity_.data();
-      const Points now[4] = {a0, a1, b0, b1};
-      const Points travel = by_share([&](int k) { return now[k] - gather(x0, n[k]); });
-      const Points speed = by_share([&](int k) { return gather(v0, n[k]); });
-      add_touches(near, touching, s, t, share, l, normal, L, speed, travel);
-    }
+    const Four L = places.each([&](const PairPlace& of) { return pairs_[of.pair].L; });
+    const Four square = dot(between, between);
+    const unsigned touching = bits(square < L * L) & places.lanes();
+    Four l = sqrt(square);
+    Points normal = Four(1) / l * between;
+    tell_sides(places, between, l, normal);
+    const std::array<Four, 4> share{1 - s, s, t - 1, -t};
+    const auto by_share = [&](auto at) {
+      return share[0] * at(0) + share[1] * at(1) + share[2] * at(2) + share[3] * at(3);
+    };
+    const Vec3 *const x0 = start_.data(), *const v0 = velocity_.data();
+    const Points now[4] = {a0, a1, b0, b1};
+    const Points travel = by_share([&](int k) { return now[k] - gather(x0, n[k]); });
+    const Points speed = by_share([&](int k) { return gather(v0, n[k]); });
+    add_touches(touching, s, t, share, l, normal, L, speed, travel);
     places.count = 0;
+  }
+
+  PairVector start_of(const MemberPair& pair) const {
+    return merged_ != nullptr ? topple::gather(pair, start_) : pair.start;
   }
 
   // Ends that have come no nearer than the distance have not passed each other; the sides of the others are
   // those of the start.
-  void tell_sides(const FourPlaces& places, unsigned near, const Points& between, Four& l,
-                  Points& normal) const {
+  void tell_sides(const FourPlaces& places, const Points& between, Four& l, Points& normal) const {
     for (int k = 0; k < places.count; ++k) {
-      if (!(near >> k & 1) || l[k] * l[k] > places.at[k].approach2) continue;
+      if (l[k] * l[k] > places.at[k].approach2) continue;
       const Vec3 now = lane(between, k),
-                 before = between_at(places.at[k].place, pairs_[places.at[k].pair].start);
+                 before = between_at(places.at[k].place, start_of(pairs_[places.at[k].pair]));
       const double distance = now.norm();
       l.set(k, now.dot(before) < 0 ? -distance : distance);
       set_lane(normal, k, distance > 0 ? Vec3(now / l[k]) : Vec3(before.normalized()));
     }
   }
 
-  void add_touches(unsigned near, unsigned touching, Four s, Four t, const std::array<Four, 4>& share, Four l,
+  // Of a place of several pairs: as long as their springs together pull.
+  Vec3 stick_at(const PairPlace& at) const {
+    Vec3 stick = pairs_[at.pair].stick[at.place];
+    if (at.same < 0) return stick;
+    double rest = at.weight;
+    Vec3 sum = Vec3::Zero();
+    for (int k = at.same; k >= 0; k = found_.same[k].next) {
+      const SameTouch& same = found_.same[k];
+      sum += same.weight * pairs_[same.pair].stick[same.place];
+      rest -= same.weight;
+    }
+    return (sum + rest * stick) / at.weight;
+  }
+
+  void add_touches(unsigned touching, Four s, Four t, const std::array<Four, 4>& share, Four l,
                    const Points& normal, Four L, const Points& speed, Points stick) {
     const FourPlaces& places = places_;
     const std::size_t first = found_.touches.size();
     const Four depth = 1 - l / L;
     Points before;
-    for (int k = 0; k < 4; ++k) {
-      const Place& at = places.at[k < places.count ? k : 0];
-      set_lane(before, k, pairs_[at.pair].stick[at.place]);
-    }
+    for (int k = 0; k < 4; ++k) set_lane(before, k, stick_at(places.at[k < places.count ? k : 0]));
     stick = before + stick;
     const auto normals = lanes(normal), speeds = lanes(speed), sticks = lanes(stick);
     for (int k = 0; k < places.count; ++k) {
-      if (!(near >> k & 1)) continue;
-      const Place& at = places.at[k];
+      const PairPlace& at = places.at[k];
       MemberTouch& touch = (touching >> k & 1 ? found_.touches : found_.ahead).emplace_back();
       touch.pair = at.pair;
       touch.place = at.place;
       for (int end = 0; end < 4; ++end) touch.share[end] = share[end][k];
       touch.weight = at.weight;
+      touch.same = at.same;
       touch.s = s[k];
       touch.t = t[k];
       touch.s_free = (at.place == 0 || at.place > 2) && s[k] > 0 && s[k] < 1;
@@ -238,7 +310,7 @@ class TouchFinder {
       in.L = L[k];
       store_three(in.velocity.data(), speeds[k]);
       store_three(in.stick.data(), sticks[k]);
-      in.mass = pairs_[at.pair].mass;
+      in.mass = at.mass;
       in.between_members = true;
       if (with_forces_ && !in_packs_) touch.out = contact_force(weighted(law_, touch), in);
     }
@@ -252,12 +324,11 @@ class TouchFinder {
     Four::Mask mask;
     for (int k = 0; k < 4; ++k) mask[k] = touching >> k & 1 ? -1 : 0;
     depth = choose(mask, depth, Four(0));
-    const Four alpha = law_.alpha * places.each([](const Place& of) { return of.weight; });
+    const Four alpha = law_.alpha * places.each([](const PairPlace& of) { return of.weight; });
     Four p = alpha * penalty_power(depth, law_.q);
     for (int k = 0; k < places.count; ++k)
       if (depth[k] > k_hardening_depth) p.set(k, alpha[k] / law_.alpha * penalty_force(law_, depth[k], true));
-    const StickSpring<Four> spring(alpha, L,
-                                   places.each([&](const Place& of) { return pairs_[of.pair].mass; }));
+    const StickSpring<Four> spring(alpha, L, places.each([](const PairPlace& of) { return of.mass; }));
     const auto f =
         coulomb_force(law_, loss_, law_.excess() > 0, normal, speed, stick, mask, p, spring.k, spring.c);
     const Points tangential = -f.scale * f.trial, force = f.normal * normal + tangential;
@@ -278,18 +349,34 @@ class TouchFinder {
   }
 
   void complete_blends() {
-    auto touch = found_.touches.begin();
     for (MemberBlend& blend : found_.blends) {
       const MemberPair& pair = pairs_[blend.pair];
       const auto at = [&](int k) { return position_[pair.node[k]]; };
       ranges::copy(sine2_by_end({at(0), at(1), at(2), at(3)}), blend.by_sine.begin());
-      while (touch != found_.touches.end() && touch->pair < blend.pair) ++touch;
-      for (; touch != found_.touches.end() && touch->pair == blend.pair; ++touch) {
-        const double part = touch->place == 0 ? 1 : -0.25;
-        blend.surplus += part * penalty_energy(law_, touch->input.depth, pair.L, true);
-        const double force = part * penalty_force(law_, touch->input.depth, true);
-        for (int k = 0; k < 4; ++k) blend.by_surplus[k] -= force * touch->share[k] * touch->input.normal;
-      }
+    }
+    if (found_.blends.empty()) return;
+    for (std::size_t k = 0; k < found_.touches.size(); ++k)
+      found_.each_place(found_.touches[k], [&](int pair, int place) {
+        const auto blend =
+            std::lower_bound(found_.blends.begin(), found_.blends.end(), pair,
+                             [](const MemberBlend& one, int number) { return one.pair < number; });
+        if (blend != found_.blends.end() && blend->pair == pair) add_to_blend(*blend, place, k);
+      });
+  }
+
+  // A touch of the blend's pair, at the same two places as its own.
+  void add_to_blend(MemberBlend& blend, int place, std::size_t number) {
+    const MemberTouch& touch = found_.touches[number];
+    const MemberPair &pair = pairs_[blend.pair], &listed = pairs_[touch.pair];
+    if (blend.touch < 0) blend.touch = static_cast<int>(number);
+    const double part = place == 0 ? 1 : -0.25;
+    blend.surplus += part * penalty_energy(law_, touch.input.depth, pair.L, true);
+    const double force = part * penalty_force(law_, touch.input.depth, true);
+    for (int k = 0; k < 4; ++k) {
+      const int side = k < 2 ? 0 : 2;
+      for (int m = side; m < side + 2; ++m)
+        if (listed.node[m] == pair.node[k])
+          blend.by_surplus[k] -= force * touch.share[m] * touch.input.normal;
     }
   }
 
@@ -298,6 +385,7 @@ class TouchFinder {
   const double loss_;
   const std::span<const MemberPair> pairs_;
   const std::span<const Vec3> position_, velocity_, start_;
+  PairPlaces* const merged_;
   MemberContacts& found_;
   FourPlaces pairs_ahead_, places_;
 };
@@ -307,16 +395,16 @@ template <class Index>
 void find_contacts_of(std::size_t count, Index index, const ContactLaw& law,
                       std::span<const MemberPair> pairs, std::span<const Vec3> position,
                       std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
-                      MemberContacts& found) {
+                      PairPlaces* merged, MemberContacts& found) {
   found.clear();
-  TouchFinder finder(law, pairs, position, velocity, start, with_forces, found);
+  TouchFinder finder(law, pairs, position, velocity, start, with_forces, merged, found);
   const int end = static_cast<int>(count);
   for (int k = 0; k < end; ++k)
     if (pairs[index(k)].panel == nullptr) finder.look_at(index(k));
   finder.end();
   for (int k = 0; k < end; ++k)
     if (pairs[index(k)].panel != nullptr)
-      find_panel_touches(law, pairs, index(k), position, velocity, start, found);
+      find_panel_touches(law, pairs, index(k), position, velocity, start, with_forces, found);
 }
 
 }  // namespace
@@ -325,16 +413,16 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found) {
   const auto all = [](int k) { return k; };
-  find_contacts_of(pairs.size(), all, law, pairs, position, velocity, start, true, found);
+  find_contacts_of(pairs.size(), all, law, pairs, position, velocity, start, true, nullptr, found);
 }
 
-void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
+void find_merged_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const int> which, std::span<const Vec3> position,
                           std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
-                          MemberContacts& found) {
+                          PairPlaces& places, MemberContacts& found) {
   find_contacts_of(
       which.size(), [&](int k) { return which[k]; }, law, pairs, position, velocity, start, with_forces,
-      found);
+      &places, found);
 }
 
 }  // namespace topple

@@ -46,7 +46,7 @@ MemberBlend blend_of(const ContactLaw& law, const MemberTouch& touch, const Memb
 
 void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, int index,
                         std::span<const Vec3> position, std::span<const Vec3> velocity,
-                        std::span<const Vec3> start, MemberContacts& found) {
+                        std::span<const Vec3> start, bool with_forces, MemberContacts& found) {
   const MemberPair& pair = pairs[index];
   const PairVector x = gather(pair, position);
   double moved = 0;
@@ -83,14 +83,15 @@ void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs
     in.stick = pair.stick[touch.place] + relative(touch, pair, position) - relative(touch, pair, start);
     in.mass = pair.mass;
     in.between_members = true;
-    touch.out = contact_force(weighted(law, touch), in);
+    if (with_forces) touch.out = contact_force(weighted(law, touch), in);
     if (!(square < pair.L * pair.L)) {
       found.ahead.push_back(touch);
       continue;
     }
     found.touches.push_back(touch);
-    if (share.share < 1 && traits(law).stores_energy)
-      found.blends.push_back(blend_of(law, touch, pair, at, share));
+    if (!(share.share < 1) || !traits(law).stores_energy) continue;
+    found.blends.push_back(blend_of(law, touch, pair, at, share));
+    found.blends.back().touch = static_cast<int>(found.touches.size()) - 1;
   }
 }
 

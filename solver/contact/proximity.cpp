@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/contact/nearest_places.h"
 #include "solver/contact/panel_place.h"
 
 namespace topple {
@@ -46,7 +47,10 @@ std::vector<bool> held_bodies(const Model& model) {
   return held;
 }
 
-NearSearch::NearSearch(const Model& model) : model_(model), held_(held_bodies(model)) {}
+NearSearch::NearSearch(const Model& model) : model_(model), held_(held_bodies(model)) {
+  for (const Element& element : model.elements)
+    half_width_.push_back(model.sections[model.members[element.member].section].width / 2);
+}
 
 // Pairs of bodies, not both held, whose boxes overlap.
 void NearSearch::find_bodies() {
@@ -85,17 +89,51 @@ void NearSearch::find_bodies() {
   std::sort(pairs_.begin(), pairs_.end());
 }
 
-void NearSearch::find_inside(int body, const Box& common, std::span<const Vec3> position, double margin,
-                             std::vector<std::pair<int, Box>>& elements) const {
+NearSearch::Extent::Extent(const Box& box)
+    : low(Four::Vector{box.min().x(), box.min().y(), box.min().z(), 0}),
+      high(Four::Vector{box.max().x(), box.max().y(), box.max().z(), 0}) {}
+
+void NearSearch::find_inside(int body, const Extent& common, std::vector<int>& elements) const {
   elements.clear();
   const Body& b = model_.bodies[body];
   for (int e = b.first_element; e < b.first_element + b.element_count; ++e)
-    if (const Box box = element_box(model_, model_.elements[e], position, margin); box.intersects(common))
-      elements.emplace_back(e, box);
+    if (extents_[e].meets(common)) elements.push_back(e);
+}
+
+// Pairs of of_a_ and of_b_, four at a time.
+void NearSearch::find_elements(std::span<const Vec3> position, double margin) {
+  std::array<ElementPair, 4> ahead;
+  std::array<std::array<int, 4>, 4> nodes{};  // per end
+  Four reach(0);
+  int count = 0;
+  const auto look = [&] {
+    const Vec3* const x = position.data();
+    const PackVector<Four> a = gather(x, nodes[0]), b = gather(x, nodes[2]), u = gather(x, nodes[1]) - a,
+                           v = gather(x, nodes[3]) - b, r = a - b;
+    const auto [s, t] = nearest_places(u, v, r);
+    const PackVector<Four> between = r + s * u - t * v;
+    const unsigned near = bits(dot(between, between) <= reach * reach);
+    for (int k = 0; k < count; ++k)
+      if (near >> k & 1) found_.push_back(ahead[k]);
+    count = 0;
+  };
+  for (const int a : of_a_)
+    for (const int b : of_b_) {
+      if (!extents_[a].meets(extents_[b])) continue;
+      const int *const m = model_.elements[a].node, *const n = model_.elements[b].node;
+      nodes[0][count] = m[0];
+      nodes[1][count] = m[1];
+      nodes[2][count] = n[0];
+      nodes[3][count] = n[1];
+      reach.set(count, half_width_[a] + half_width_[b] + margin);
+      ahead[count++] = {a, b};
+      if (count == 4) look();
+    }
+  if (count > 0) look();
 }
 
 // Pairs of tips, ends of these elements, with panels of `other`.
-void NearSearch::find_tips(const std::vector<std::pair<int, Box>>& elements, int other, const Box& common,
+void NearSearch::find_tips(const std::vector<int>& elements, int other, const Extent& common,
                            std::span<const Vec3> position, double margin) {
   const Body& b = model_.bodies[other];
   for (int k = b.first_panel; k < b.first_panel + b.panel_count; ++k) {
@@ -104,17 +142,19 @@ void NearSearch::find_tips(const std::vector<std::pair<int, Box>>& elements, int
     std::array<Vec3, 4> corner;
     Box box;
     for (int i = 0; i < 4; ++i) box.extend(corner[i] = position[panel.node[i]]);
-    const Vec3 reach = Vec3::Constant((panel.width + margin) / 2);
-    box.min() -= reach;
-    box.max() += reach;
-    if (!box.intersects(common)) continue;
-    for (const auto& [e, element] : elements) {
-      if (!box.intersects(element)) continue;
-      for (int end = 0; end < 2; ++end)
-        if (is_tip(model_, e, end) &&
-            nearest_on_panel(position[model_.elements[e].node[end]], corner).between.norm() <=
-                contact_length(model_, {e, part}) + margin)
+    const Vec3 wide = Vec3::Constant((panel.width + margin) / 2);
+    const Extent extent(Box(box.min() - wide, box.max() + wide));
+    if (!extent.meets(common)) continue;
+    for (const int e : elements) {
+      if (!extent.meets(extents_[e])) continue;
+      for (int end = 0; end < 2; ++end) {
+        if (!is_tip(model_, e, end)) continue;
+        const Vec3& tip = position[model_.elements[e].node[end]];
+        const double reach = contact_length(model_, {e, part}) + margin;
+        if (box.squaredExteriorDistance(tip) <= reach * reach &&
+            nearest_on_panel(tip, corner).between.norm() <= reach)
           tips_.push_back({e, part});
+      }
     }
   }
 }
@@ -132,27 +172,24 @@ void NearSearch::sort() {
 
 const std::vector<ElementPair>& NearSearch::find(std::span<const Vec3> position, double margin) {
   boxes_.clear();
+  extents_.clear();
   for (const Body& body : model_.bodies) {
     Box box;
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-      box.extend(element_box(model_, model_.elements[e], position, margin));
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+      const Box own = element_box(model_, model_.elements[e], position, margin);
+      extents_.emplace_back(own);
+      box.extend(own);
+    }
     boxes_.push_back(box);
   }
   find_bodies();
   found_.clear();
   tips_.clear();
   for (const auto& [a, b] : pairs_) {
-    const Box common = boxes_[a].intersection(boxes_[b]);
-    find_inside(a, common, position, margin, of_a_);
-    find_inside(b, common, position, margin, of_b_);
-    for (const auto& [i, box_i] : of_a_)
-      for (const auto& [j, box_j] : of_b_) {
-        if (!box_i.intersects(box_j)) continue;
-        const int *m = model_.elements[i].node, *n = model_.elements[j].node;
-        const double l =
-            nearest_points(position[m[0]], position[m[1]], position[n[0]], position[n[1]]).between.norm();
-        if (l <= contact_length(model_, {i, j}) + margin) found_.push_back({i, j});
-      }
+    const Extent common(boxes_[a].intersection(boxes_[b]));
+    find_inside(a, common, of_a_);
+    find_inside(b, common, of_b_);
+    find_elements(position, margin);
     if (!model_.surfaces) continue;
     find_tips(of_a_, b, common, position, margin);
     find_tips(of_b_, a, common, position, margin);

@@ -108,19 +108,29 @@ class NearSearch {
       return std::tie(a.cell, a.body) < std::tie(b.cell, b.body);
     }
   };
+  // A box whose sides are compared at once; the fourth lane is 0.
+  struct Extent {
+    Four low, high;
+    explicit Extent(const Box& box);
+    bool meets(const Extent& other) const {
+      return bits((low <= other.high) & (other.low <= high)) == k_all_lanes;
+    }
+  };
   void find_bodies();
-  void find_inside(int body, const Box& common, std::span<const Vec3> position, double margin,
-                   std::vector<std::pair<int, Box>>& elements) const;
-  void find_tips(const std::vector<std::pair<int, Box>>& elements, int other, const Box& common,
+  void find_inside(int body, const Extent& common, std::vector<int>& elements) const;
+  void find_elements(std::span<const Vec3> position, double margin);
+  void find_tips(const std::vector<int>& elements, int other, const Extent& common,
                  std::span<const Vec3> position, double margin);
   void sort();
 
   const Model& model_;
   const std::vector<bool> held_;
-  std::vector<Box> boxes_;                        // per body
-  std::vector<Placed> cells_;                     // free bodies by place
-  std::vector<std::pair<int, int>> pairs_;        // bodies
-  std::vector<std::pair<int, Box>> of_a_, of_b_;  // elements where two boxes overlap
+  std::vector<double> half_width_;          // m, per element
+  std::vector<Box> boxes_;                  // per body
+  std::vector<Extent> extents_;             // per element
+  std::vector<Placed> cells_;               // free bodies by place
+  std::vector<std::pair<int, int>> pairs_;  // bodies
+  std::vector<int> of_a_, of_b_;            // elements where two boxes overlap
   std::vector<ElementPair> found_, tips_, sorted_;
   std::vector<int> starts_;  // per element: of its pairs in sorted_
 };

@@ -176,6 +176,15 @@ double shake_frequency(const Shake& shake, double t) {
   return shake.frequency * elementary::pow(shake.last_frequency / shake.frequency, share);
 }
 
+double highest_frequency(const Shake& shake) {
+  if (!traits(shake.kind).has_frequency) return 0;
+  return traits(shake.kind).sweeps ? std::max(shake.frequency, shake.last_frequency) : shake.frequency;
+}
+
+bool rows_follow(const Shake& shake, double output_rate) {
+  return k_rows_in_period * highest_frequency(shake) <= output_rate;
+}
+
 double ground_end(const Shake& shake) {
   return traits(shake.kind).end(shake);
 }

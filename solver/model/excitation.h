@@ -74,6 +74,12 @@ double shake_turns(const Shake& shake, double t);
 
 /// Frequency of a sine or sweep at time t, Hz.
 double shake_frequency(const Shake& shake, double t);
+/// Of a kind with a frequency the highest that it comes to, Hz; else 0.
+double highest_frequency(const Shake& shake);
+/// Fewer rows in a period draw another motion.
+inline constexpr double k_rows_in_period = 4;
+/// Whether rows at `output_rate`, Hz, show the floor's motion.
+bool rows_follow(const Shake& shake, double output_rate);
 
 /// Time from which on the shake is 0, s; infinite for a sine that goes on.
 double shake_end(const Shake& shake);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <tuple>
 
 #include "solver/contact/coulomb.h"
@@ -18,8 +17,6 @@ constexpr int k_held_after = 15;       // of them: limits of friction are held
 constexpr int k_looks = 8;             // along a correction
 constexpr double k_least_share = 0.1;  // of what is left of it, between two looks
 constexpr double k_turned_back = 0.5;  // of what is left along a correction, with the other sign: too far
-constexpr double k_same = 1e-8;        // m and of normals: contacts nearer to each other are at one place
-constexpr double k_cell = 1e-6;        // m, of the table of places
 constexpr double k_resolved = 4;       // rad in a step, of a bounce on contacts, which is then half implicit
 
 using Points = PackVector<Four>;
@@ -75,25 +72,15 @@ int ContactImpulses::add(int first, int second, double grip, bool hardens, const
   const auto same = [&](const Touching& of) {
     return of.body[0] == first && of.body[1] == second && of.hardens == hardens;
   };
-  if (touching_.empty() || !same(touching_.back())) {
+  if (touching_.empty() || !same(touching_.back()))
     touching_.push_back(
         {{first, second}, gripped(*law_, grip), hardens, static_cast<int>(contacts_.size()), 0});
-    places_.fill(-1);
-  }
   const double k = contact.alpha / contact.L * std::max(1., law_->q);
   for (int side = 0; side < (second < 0 ? 1 : 2); ++side) {
     RigidBody& body = bodies_[side == 0 ? first : second];
     body.stiffness += k * (1 / body.mass + contact.arm[side].squaredNorm() / body.least_inertia);
   }
   int& count = touching_.back().count;
-  int* slot = nullptr;
-  if (hardens) {
-    slot = find_place(contact);
-    if (slot != nullptr && *slot >= 0) {
-      merge(*slot, contact);
-      return *slot;
-    }
-  }
   const int lane = count++ % 4;
   if (lane == 0) {
     const Points none = in_all_lanes(Vec3::Zero());
@@ -109,43 +96,7 @@ int ContactImpulses::add(int first, int second, double grip, bool hardens, const
   to.k.set(lane, contact.stick_stiffness);
   to.c.set(lane, contact.stick_damping);
   set_lane(to.turning, lane, contact.turning);
-  const int number = 4 * (static_cast<int>(contacts_.size()) - 1) + lane;
-  if (slot != nullptr) *slot = number;
-  return number;
-}
-
-bool ContactImpulses::is_at(int number, const NearContact& contact) const {
-  const FourContacts& at = contacts_[number / 4];
-  const int of = number % 4;
-  const auto near = [&](const Points& a, const Vec3& b) {
-    return (lane(a, of) - b).squaredNorm() < k_same * k_same;
-  };
-  return near(at.arm[0], contact.arm[0]) && near(at.arm[1], contact.arm[1]) &&
-         near(at.normal, contact.normal) && std::abs(at.depth[of] - contact.depth) * contact.L < k_same &&
-         at.L[of] == contact.L;
-}
-
-// Where the number of the contact at that place is kept, or is to be: -1. Null: the table is full.
-int* ContactImpulses::find_place(const NearContact& contact) {
-  std::uint64_t hash = 0;
-  for (const double x : contact.arm[0])
-    hash = (hash ^ static_cast<std::uint64_t>(std::llrint(x / k_cell))) * 0x9e3779b97f4a7c15u;
-  constexpr std::size_t k_slots = std::tuple_size_v<decltype(places_)>;
-  for (std::size_t k = 0; k < k_slots / 2; ++k) {
-    int& slot = places_[((hash >> 32) + k) % k_slots];
-    if (slot < 0 || is_at(slot, contact)) return &slot;
-  }
-  return nullptr;
-}
-
-void ContactImpulses::merge(int number, const NearContact& contact) {
-  FourContacts& to = contacts_[number / 4];
-  const int of = number % 4;
-  const double k = to.k[of] + contact.stick_stiffness;
-  set_lane(to.stick, of, (to.k[of] * lane(to.stick, of) + contact.stick_stiffness * contact.stick) / k);
-  to.k.set(of, k);
-  to.c.set(of, to.c[of] + contact.stick_damping);
-  to.alpha.set(of, to.alpha[of] + contact.alpha);
+  return 4 * (static_cast<int>(contacts_.size()) - 1) + lane;
 }
 
 // What is left of the equations, and their slopes.

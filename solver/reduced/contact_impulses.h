@@ -42,8 +42,7 @@ class ContactImpulses {
   /// `guess`: where the search for its velocity begins.
   void add(const RigidBody& body, const Velocity& guess);
   /// Between bodies by their order of addition; second -1: a plane or what is held. grip: Body::grip.
-  /// hardens: as between members (penalty_force). Those of two bodies at one place, as where members end in a
-  /// corner, become one contact. Returns its number, for stick().
+  /// hardens: as between members (penalty_force). Returns its number, for stick().
   int add(int first, int second, double grip, bool hardens, const NearContact& contact);
   /// Whether at a contact that is closed, or closes in the step, the bodies meet or part faster than `speed`,
   /// m/s.
@@ -71,9 +70,6 @@ class ContactImpulses {
     bool hardens;
     int first, count;  // pack; contacts
   };
-  int* find_place(const NearContact& contact);
-  bool is_at(int number, const NearContact& contact) const;
-  void merge(int number, const NearContact& contact);
   struct Slopes;
   struct Motion;
   struct Springs;
@@ -93,7 +89,6 @@ class ContactImpulses {
   std::vector<Velocity> u_;
   std::vector<FourContacts> contacts_;
   std::vector<Touching> touching_;
-  std::array<int, 256> places_;  // of the newest Touching: numbers of contacts, by a hash of their place
   std::vector<double> left_, correction_;  // six per body
   // Limits of friction that follow the normal forces make the matrix unsymmetric. Where Newton does not get
   // on with that they are held in it: a slower way, but down.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double k_least_tolerance = 1e-3;  // below it TR-BDF2 is cheaper
 constexpr double k_step = 6.3;              // over the tolerance, of sqrt(reach/g)
-constexpr double k_most_growth = 3;         // of that step, for bodies at rest
+constexpr double k_most_growth = 6;         // of that step, for bodies at rest
 constexpr double k_slow = 0.05;             // of sqrt(g reach), speed below which steps grow
 constexpr double k_bounce_speed =
     0.05;                            // of sqrt(g reach), along the normal: what strikes faster is resolved
@@ -28,6 +28,7 @@ constexpr double k_stale = 5e-4;     // m, by which bodies come nearer until a g
 constexpr double k_most_gap = 0.1;   // m, of pairs, about
 constexpr double k_deep = 0.5;       // depth from which a centre line may have passed the other
 constexpr std::size_t k_sets = 32;   // whose matrices are kept
+constexpr std::size_t k_places = 5;  // of a pair, see MemberTouch
 
 PackMat3 turned(const BodyState& s) {
   return rotation_matrix(packed(s.rotation));
@@ -186,8 +187,10 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
       }
       MemberPair& pair = pairs[p];
       pair.ahead = both.ahead;
-      pair.gap = 0;
-      for (int k = 0; k < pair.nodes(); ++k) pair.start[k] = start_[pair.node[k]];
+      if (pair.panel != nullptr) {
+        pair.gap = 0;
+        pair.start = gather(pair, start_);
+      }
       chosen_[p / 64] |= std::uint64_t{1} << p % 64;
     }
   }
@@ -195,12 +198,13 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
   for (std::size_t word = 0; word < chosen_.size(); ++word)
     for (std::uint64_t left = chosen_[word]; left != 0; left &= left - 1)
       which_.push_back(static_cast<int>(64 * word) + std::countr_zero(left));
-  find_member_contacts(law, pairs, which_, coupling_.position(), coupling_.velocity(), start_, h == 0, now_);
+  find_merged_contacts(law, pairs, which_, coupling_.position(), coupling_.velocity(), start_, h == 0,
+                       places_, now_);
   found_.assign(pairs.size(), false);
   for (const auto* list : {&now_.touches, &now_.ahead})
     for (const MemberTouch& touch : *list) {
       body_pairs_[body_pair_of_[touch.pair]].near.push_back(&touch);
-      found_[touch.pair] = true;
+      now_.each_place(touch, [&](int pair, int) { found_[pair] = true; });
     }
   find_bounds();
 }
@@ -267,16 +271,15 @@ void RigidIsland::add_bodies(const StepSpan& span, const State& state, TouchingB
 // Of a place that touched at the start: what its velocity will gain until the end as it has until the middle,
 // with velocities of the bodies that stay.
 Vec3 RigidIsland::turning_of(const MemberTouch& touch) const {
+  const MemberTouch* was = nullptr;
+  now_.each_place(touch, [&](int pair, int place) {
+    if (const int k = at_start_[k_places * pair + place]; k >= 0 && !was) was = &last_.touches[k];
+  });
+  if (!was) return Vec3::Zero();
   const ContactInput& now = touch.input;
-  for (int k = first_at_start_[touch.pair]; k >= 0 && k < static_cast<int>(last_.touches.size()); ++k) {
-    const MemberTouch& was = last_.touches[k];
-    if (was.pair != touch.pair) break;
-    if (was.place != touch.place) continue;
-    const Vec3 gained = now.velocity - was.input.velocity;
-    const double opening = now.normal.dot(now.velocity) - was.input.normal.dot(was.input.velocity);
-    return gained + (opening - now.normal.dot(gained)) * now.normal;
-  }
-  return Vec3::Zero();
+  const Vec3 gained = now.velocity - was->input.velocity;
+  const double opening = now.normal.dot(now.velocity) - was->input.normal.dot(was->input.velocity);
+  return gained + (opening - now.normal.dot(gained)) * now.normal;
 }
 
 void RigidIsland::add_contacts(const PreparedLaw& law, const BodyPair& both, TouchingBodies& set) {
@@ -331,12 +334,17 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
     add_bodies(span, state, set);
     for (const int b : bodies) set_of[b] = &set;
   }
-  first_at_start_.resize(body_pair_of_.size(), -1);
-  for (int k = static_cast<int>(last_.touches.size()) - 1; k >= 0; --k)
-    first_at_start_[last_.touches[k].pair] = k;
+  at_start_.resize(k_places * body_pair_of_.size(), -1);
+  const auto mark_start = [&](bool marked) {
+    for (std::size_t k = 0; k < last_.touches.size(); ++k)
+      last_.each_place(last_.touches[k], [&](int pair, int place) {
+        at_start_[k_places * pair + place] = marked ? static_cast<int>(k) : -1;
+      });
+  };
+  mark_start(true);
   for (const BodyPair& both : body_pairs_)
     if (!both.near.empty()) add_contacts(law, both, *set_of[both.first]);
-  for (const MemberTouch& touch : last_.touches) first_at_start_[touch.pair] = -1;
+  mark_start(false);
   double fall = std::numeric_limits<double>::infinity();
   for (const ModelBody& b : bodies_) fall = std::min(fall, fall_speed(span.parameters, *b.body));
   bounces_ = false;
@@ -383,9 +391,13 @@ void RigidIsland::move(double h, State& state, StepEnergy& booked) {
 // asked does not depend on the steps before, as bounds do.
 bool RigidIsland::missed() const {
   return ranges::any_of(now_.touches, [this](const MemberTouch& touch) {
-    if (found_before_[touch.pair]) return false;
-    const MemberPair& pair = coupling_.pairs()[touch.pair];
-    return nearest_gap(pair, gather(pair, from_)) > body_pairs_[body_pair_of_[touch.pair]].ahead_before;
+    bool missed = false;
+    now_.each_place(touch, [&](int p, int) {
+      if (found_before_[p]) return;
+      const MemberPair& pair = coupling_.pairs()[p];
+      missed |= nearest_gap(pair, gather(pair, from_)) > body_pairs_[body_pair_of_[p]].ahead_before;
+    });
+    return missed;
   });
 }
 
@@ -398,11 +410,14 @@ bool RigidIsland::passed() const {
   }
   for (const MemberTouch& touch : now_.touches) {
     if (touch.input.depth < k_deep) continue;
+    bool other_side = false;
     for (const auto* list : {&last_.touches, &last_.ahead})
       for (const MemberTouch& was : *list)
-        if (was.pair == touch.pair && was.place == touch.place &&
-            was.input.normal.dot(touch.input.normal) < 0)
-          return true;
+        last_.each_place(was, [&](int pair, int place) {
+          other_side |=
+              pair == touch.pair && place == touch.place && was.input.normal.dot(touch.input.normal) < 0;
+        });
+    if (other_side) return true;
   }
   return false;
 }
@@ -415,7 +430,8 @@ void RigidIsland::take_sticks() {
     for (const auto& [touch, number] : set->contacts) {
       const bool same =
           coupling_.bodies_of(pairs[touch->pair])[0] == body_pairs_[body_pair_of_[touch->pair]].first;
-      pairs[touch->pair].stick[touch->place] = (same ? 1 : -1) * set->impulses.stick(number);
+      const Vec3 stick = (same ? 1 : -1) * set->impulses.stick(number);
+      now_.each_place(*touch, [&](int pair, int place) { pairs[pair].stick[place] = stick; });
     }
 }
 
@@ -523,12 +539,14 @@ void RigidIsland::finish(const StepSpan& span, State& next, MemberSticks& sticks
     add_load(loads[b], s);
     here_[b].substep = s.substep = wanted;
   }
-  for (MemberTouch& touch : now_.touches) touch.out.stick = touch.input.stick;
-  sticks.store(now_.touches, coupling_.pairs(), next);
   // what is open at the end holds none
-  for (const int p : which_) coupling_.pairs()[p].stick.fill(Vec3::Zero());
-  for (const MemberTouch& touch : now_.touches)
-    coupling_.pairs()[touch.pair].stick[touch.place] = touch.input.stick;
+  const std::span<MemberPair> pairs = coupling_.pairs();
+  for (const int p : which_) pairs[p].stick.fill(Vec3::Zero());
+  for (MemberTouch& touch : now_.touches) {
+    touch.out.stick = touch.input.stick;
+    now_.each_place(touch, [&](int pair, int place) { pairs[pair].stick[place] = touch.input.stick; });
+  }
+  sticks.store(which_, pairs, next);
   law_ = span.end.law;
 }
 

@@ -116,11 +116,12 @@ class RigidIsland {
   std::optional<ContactLaw> law_;
   Held held_;  // with the law, by now_ and the contacts with planes
   MemberContacts now_;
+  PairPlaces places_;
   std::vector<int> which_;  // pairs looked at, in order; as bits
   std::vector<std::uint64_t> chosen_;
   // Of a step.
   MemberContacts last_;              // where bodies were looked at before
-  std::vector<int> first_at_start_;  // per pair: of last_.touches; -1: none
+  std::vector<int> at_start_;        // per place of each pair: of last_.touches; -1: none
   std::vector<Vec3> start_, from_;   // m, per node of the coupling: of stick springs; before the newest move
   std::vector<BodyState> start_of_;  // per body
   std::vector<TouchingBodies*> used_;

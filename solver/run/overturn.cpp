@@ -79,10 +79,10 @@ bool is_propped(const Model& model, int index) {
   });
 }
 
-/// From the centre of gravity to the edge in the direction of the tilt, and to the nearest one, m, of an
-/// upright body.
+/// From the centre of gravity of an upright body to the edge in the direction of the tilt, of one that is
+/// upright to the nearest, m.
 struct EdgeAhead {
-  double distance, height, nearest;
+  double distance, height;
 };
 std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPose& pose, const Vec3& centre) {
   const Body& body = model.bodies[index];
@@ -91,15 +91,17 @@ std::optional<EdgeAhead> edge_ahead(const Model& model, int index, const BodyPos
   const Vec3 up = pose.rotation.conjugate() * Vec3::UnitZ();
   const double height = centre.z() - body.support_polygon.front().z();
   const double lean = up.head<2>().norm();
+  if (lean > k_uplift_angle) {
+    const Vec3 downhill = Vec3(-up.x(), -up.y(), 0) / lean;
+    return EdgeAhead{distance_to_edge(body.support_polygon, centre, downhill), height};
+  }
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < body.support_polygon.size(); ++i) {
     const Vec3 edge = body.support_polygon[(i + 1) % body.support_polygon.size()] - body.support_polygon[i];
     const Vec3 outward = Vec3(edge.y(), -edge.x(), 0).normalized();
     nearest = std::min(nearest, outward.dot(body.support_polygon[i] - centre));
   }
-  if (lean <= k_uplift_angle) return EdgeAhead{nearest, height, nearest};
-  const Vec3 downhill = Vec3(-up.x(), -up.y(), 0) / lean;
-  return EdgeAhead{distance_to_edge(body.support_polygon, centre, downhill), height, nearest};
+  return EdgeAhead{nearest, height};
 }
 
 }  // namespace
@@ -139,13 +141,12 @@ OverturnBarrier overturn_barrier(const Model& model, int index, const BodyPose& 
   const auto edge = edge_ahead(model, index, pose, stack.centre_of_gravity);
   constexpr double k_never = std::numeric_limits<double>::infinity();
   if (!edge) return {k_never, k_never};
-  const auto barrier = [&](double distance, double angle) {
-    const double critical = elementary::atan2(distance, edge->height);
-    return stack.mass * gravity * elementary::hypot(distance, edge->height) *
+  const double critical = elementary::atan2(edge->distance, edge->height);
+  const auto barrier = [&](double angle) {
+    return stack.mass * gravity * elementary::hypot(edge->distance, edge->height) *
            (1 - elementary::cos(critical - std::min(angle, critical)));
   };
-  const double upright = barrier(edge->nearest, 0);
-  return {std::min(barrier(edge->distance, tilt(pose)), upright), upright};
+  return {barrier(tilt(pose)), barrier(0)};
 }
 
 double slide(const Model& model, int index, const BodyPose& pose, const Bearer& bearer, const BodyPose& on) {

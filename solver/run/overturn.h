@@ -49,8 +49,8 @@ double critical_angle(const Model& model, int body, const BodyPose& pose, const 
 /// infinite where critical_angle is.
 ///   m g R (1 - cos(critical - tilt)),  R from the edge to the centre of gravity; 0 beyond the critical angle
 struct OverturnBarrier {
-  double left;   ///< over the edge ahead from this tilt on, or over the nearest from upright, if that is less
-  double whole;  ///< from upright, over the nearest edge
+  double left;   ///< over the edge in the direction of the tilt, from this tilt on; upright the nearest
+  double whole;  ///< from upright, over the same edge
 };
 /// gravity: m/s^2.
 OverturnBarrier overturn_barrier(const Model& model, int body, const BodyPose& pose, const Stack& stack,

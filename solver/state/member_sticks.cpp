@@ -31,7 +31,9 @@ void replace(std::span<const MemberPair> pairs, const std::vector<MemberStick>& 
              std::vector<MemberStick>& all, std::vector<MemberStick>& merged) {
   auto pair = pairs.begin();
   const auto own = [&](const MemberStick& stick) {
-    while (pair != pairs.end() && pair->elements < stick.elements) ++pair;
+    const auto is_before = [&](const MemberPair& one) { return one.elements < stick.elements; };
+    if (pair != pairs.end() && is_before(*pair)) ++pair;  // mostly the next one has it, or none for long
+    if (pair != pairs.end() && is_before(*pair)) pair = std::partition_point(pair, pairs.end(), is_before);
     return pair != pairs.end() && pair->elements == stick.elements;
   };
   std::erase_if(all, own);
@@ -59,6 +61,15 @@ void MemberSticks::store(std::span<const MemberTouch> touches, std::span<const M
   for (const MemberTouch& touch : touches)
     new_.push_back({pairs[touch.pair].elements, touch.place, touch.out.stick});
   sort(new_, merged_);
+  replace(pairs, new_, keeps_ ? own_ : state.member_sticks, merged_);
+}
+
+void MemberSticks::store(std::span<const int> which, std::span<const MemberPair> pairs, State& state) {
+  new_.clear();
+  for (const int p : which)
+    for (int place = 0; place < static_cast<int>(pairs[p].stick.size()); ++place)
+      if (const Vec3& stick = pairs[p].stick[place]; !stick.isZero(0))
+        new_.push_back({pairs[p].elements, place, stick});
   replace(pairs, new_, keeps_ ? own_ : state.member_sticks, merged_);
 }
 

@@ -17,6 +17,8 @@ class MemberSticks {
   void load(const State& state, std::span<MemberPair> pairs) const;
   /// What touches leaves its springs; those of the other pairs in `pairs` become zero.
   void store(std::span<const MemberTouch> touches, std::span<const MemberPair> pairs, State& state);
+  /// Those of MemberPair::stick of the pairs `which`, in order; those of the others become zero.
+  void store(std::span<const int> which, std::span<const MemberPair> pairs, State& state);
   /// From take to give it works on a copy.
   void take(const State& state);
   void give(std::span<const MemberPair> pairs, State& state);

@@ -17,15 +17,14 @@ std::string format(const char* pattern, double a) {
 const char* in_words(NoRest why) {
   switch (why) {
     case NoRest::leaves:
-      return "nothing keeps it where it is (does it stand on something, with enough friction, and can alpha "
-             "and "
-             "the steel carry it?)";
+      return "nothing keeps it where it is (does it stand on something, with enough friction, clear of its "
+             "neighbours, and can alpha and the steel carry it?)";
     case NoRest::tips_over:
       return "it balances, but tips over by itself (do soft contacts let it lean?)";
     case NoRest::not_found:
       break;
   }
-  return "none was found (can alpha and the steel carry it?)";
+  return "none was found (is it clear of its neighbours, and can alpha and the steel carry it?)";
 }
 
 const char* loss_in_words(Stability::Loss loss) {

@@ -492,7 +492,9 @@ StepStatus LoadPath::advance(const Parameters& parameters, State& state) {
     }
   }
   if (done > 0) ++state.step;
-  if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none)
+  // where it was unstable before, what is lost is not why it ends
+  if (status.kind == StepStatus::Kind::no_equilibrium && status.stability.loss == Stability::Loss::none &&
+      stability_.stable())
     status.stability = what_is_lost(parameters, state, status.body);
   status.time = state.time;
   status.newton_iterations = iterations;

@@ -91,6 +91,10 @@ Node parse_toml(std::string_view text, const std::string& origin);
 /// keys and the tables above them, but no entry of an array. Throws InputError, also for bytes that are not
 /// UTF-8, which no scene can hold.
 void apply_override(Node& root, const std::string& override_text);
+/// What the title of a scene ends with whose values are no longer those it was written with.
+inline constexpr std::string_view k_title_changed = " (changed)";
+/// Applies what a person sets, and says so in the title, but for one that is set itself.
+void change(Node& root, const std::vector<std::string>& overrides);
 
 /// A text as a TOML basic string: escaped, with double quotes around it.
 std::string written_text(std::string_view text);

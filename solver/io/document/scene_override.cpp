@@ -109,4 +109,15 @@ void apply_override(Node& root, const std::string& override_text) {
   }
 }
 
+void change(Node& root, const std::vector<std::string>& overrides) {
+  const auto title = [&root]() -> std::string {
+    const Node* const found = root.find("title");
+    return found && found->kind == Node::Kind::text ? found->text : "";
+  };
+  const std::string before = title();
+  for (const std::string& change : overrides) apply_override(root, change);
+  if (!overrides.empty() && !before.empty() && title() == before && !before.ends_with(k_title_changed))
+    root.find_item("title")->value.text += k_title_changed;
+}
+
 }  // namespace topple::io

@@ -8,6 +8,7 @@
 #include "solver/io/document/scene_document.h"
 #include "solver/io/edit/scene_number.h"
 #include "solver/io/scene/scene_keys.h"
+#include "solver/math/ranges.h"
 
 namespace topple::io {
 namespace {
@@ -98,6 +99,14 @@ class Comparison {
     }
   }
 
+  // Where both leave it out, it may still differ: it follows from the furniture.
+  void chosen_alpha() {
+    const Key& key = *find_key("contact", "alpha");
+    const double left = a_.setup.parameters.contact.alpha, right = b_.setup.parameters.contact.alpha;
+    if (left == right || ranges::find(found, "contact.alpha", &SceneDifference::key) != found.end()) return;
+    found.push_back({"contact.alpha", value_text(key, left), value_text(key, right)});
+  }
+
  private:
   static bool is_table(const Node* node) { return node && node->kind == Node::Kind::table; }
   static bool is_entries(const Node* node) {
@@ -145,12 +154,22 @@ class Comparison {
   const Scene &a_, &b_;
 };
 
+// What was changed is told by its own key.
+Node as_titled(const Scene& scene) {
+  Node root = parse_toml(scene.text, scene.name);
+  Item* const title = root.find_item("title");
+  if (title && title->value.text.ends_with(k_title_changed))
+    title->value.text.erase(title->value.text.size() - k_title_changed.size());
+  return root;
+}
+
 }  // namespace
 
 std::vector<SceneDifference> differences(const Scene& a, const Scene& b) {
-  const Node left = parse_toml(a.text, a.name), right = parse_toml(b.text, b.name);
+  const Node left = as_titled(a), right = as_titled(b);
   Comparison comparison(a, b);
   comparison.tables(&left, &right, "", "");
+  comparison.chosen_alpha();
   return std::move(comparison.found);
 }
 

@@ -139,7 +139,7 @@ void anchors_rows(CsvFile& csv, const Model& model, const FrameRow& row) {
     const AnchorNumbers& anchor = row.anchor[k];
     csv.number(row.time).text(model.anchors[k].name);
     csv.number(anchor.tension).number(anchor.energy).number(anchor.natural_length);
-    csv.text(anchor_word(anchor.state)).end_row();
+    csv.text(anchor_word(anchor_state(model.anchors[k], anchor))).end_row();
   }
 }
 

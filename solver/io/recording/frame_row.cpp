@@ -12,6 +12,10 @@ bool has_stresses(const FrameRow& row, int body) {
   return traits(static_cast<ModelLevel>(row.level[static_cast<std::size_t>(body)])).has_stresses;
 }
 
+float anchor_state(const Anchor& anchor, const AnchorNumbers& now) {
+  return now.state == k_anchor_slack && !can_slacken(anchor) ? k_anchor_holds : now.state;
+}
+
 const char* anchor_word(float state) {
   if (state == k_anchor_away) return "away";
   if (state == k_anchor_slack) return "slack";

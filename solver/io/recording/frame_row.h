@@ -29,6 +29,10 @@ inline bool flows_now(std::uint8_t code) {
 inline constexpr float k_anchor_away = 0, k_anchor_slack = 1, k_anchor_holds = 2, k_anchor_broken = 3;
 /// "away", "slack", "holds", "broken".
 const char* anchor_word(float state);
+/// Whether it may stand in place without a force and hold nothing: a bracket pulls and pushes.
+inline bool can_slacken(const Anchor& anchor) {
+  return anchor.type != Anchor::Type::bracket;
+}
 
 /// A body at one instant.
 struct BodyNumbers {
@@ -54,6 +58,8 @@ struct AnchorNumbers {
   float state;           ///< k_anchor_away, ...
   bool operator==(const AnchorNumbers&) const = default;
 };
+/// Its state as the anchor is one: what cannot slacken holds without force, too.
+float anchor_state(const Anchor& anchor, const AnchorNumbers& now);
 using AnchorArray = std::array<float, 4>;
 static_assert(sizeof(AnchorNumbers) == sizeof(AnchorArray));
 

@@ -103,7 +103,12 @@ SceneSource find_scene(const std::string& path_or_name) {
 
 Scene load_scene(const std::string& path_or_name, const std::vector<std::string>& overrides) {
   const SceneSource source = find_scene(path_or_name);
-  return parse_scene(source.text, source.origin, overrides, source.read);
+  if (overrides.empty()) return parse_scene(source.text, source.origin, {}, source.read);
+  refuse_large(source.text.size(), source.origin);
+  Node root = parse_toml(source.text, source.origin);
+  change(root, overrides);
+  std::string text = write_toml(root);
+  return understand(std::move(root), source, std::move(text));
 }
 
 }  // namespace topple::io

@@ -55,6 +55,8 @@ std::vector<Trial> try_factors(const Setup& setup, const std::vector<double>& fa
           trial.overturned.push_back(
               run.outcome().bodies()[static_cast<std::size_t>(b)].beyond_since.has_value());
         trial.open = open_ways(run);
+        for (const AnchorOutcome& anchor : run.outcome().anchors())
+          trial.broke.push_back(anchor.broke.has_value());
       },
       go_on);
   return trials;

@@ -36,6 +36,7 @@ struct Trial {
   bool finished = false;         ///< false: the run failed, or was not begun
   std::vector<bool> overturned;  ///< per body that is furniture
   std::vector<bool> open;        ///< per one of Room::ways()
+  std::vector<bool> broke;       ///< per anchor
 };
 
 /// Runs the scene with each factor on `jobs` threads. `go_on`: as of for_each_case.

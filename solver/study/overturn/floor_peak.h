@@ -13,9 +13,8 @@ struct FloorPeak {
 };
 
 /// Of the floor from t = 0 to `duration`. The velocity is the acceleration's integral (trapezoidal rule, 200
-/// steps a second) from rest or from what the floor jumps to; of a sine that sets in at its full amplitude
-/// it is that of its steady motion, A/(2 pi f), however it starts: a constant drift of the floor exerts no
-/// force.
+/// steps a second) from rest or from what the floor jumps to; of a sine it is that of its steady motion,
+/// A/(2 pi f), however it begins: a constant drift of the floor exerts no force.
 FloorPeak floor_peak(std::vector<Shake> shakes, double duration);
 
 }  // namespace topple::study

@@ -57,8 +57,9 @@ Information information(const std::vector<Level>& levels, const Pair& c) {
 
 std::string why_none(const std::vector<Level>& levels, const std::string& verb) {
   constexpr double k_far = std::numeric_limits<double>::infinity();
-  double least_hit = k_far, most_hit = 0, least_miss = k_far, most_miss = 0;
+  double least_hit = k_far, most_hit = 0, least_miss = k_far, most_miss = 0, first = k_far, last = 0;
   for (const auto& [a, n, k] : levels) {
+    if (n > 0) first = std::min(first, a), last = std::max(last, a);
     if (k > 0) least_hit = std::min(least_hit, a), most_hit = std::max(most_hit, a);
     if (k < n) least_miss = std::min(least_miss, a), most_miss = std::max(most_miss, a);
   }
@@ -69,8 +70,16 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
     return fmt::format("every run {} from {:.6g} on and none up to {:.6g}: the median lies between", verb,
                        least_hit, most_miss);
   if (levels.size() == 1) return fmt::format("there are runs at {:.6g} alone", least_hit);
-  if (most_miss == least_hit)
-    return fmt::format("runs differ at {:.6g} alone: the median lies near it", least_hit);
+  if (most_miss == least_hit) {
+    const Level& level = *std::ranges::find(levels, least_hit, &Level::intensity);
+    const bool beyond = least_hit == last && 2 * level.hits < level.runs,
+               below = least_hit == first && 2 * level.hits > level.runs;
+    return fmt::format("runs differ at {:.6g} alone ({} of {}): the median lies {} it", least_hit, level.hits,
+                       level.runs,
+                       beyond  ? "beyond"
+                       : below ? "below"
+                               : "near");
+  }
   if (most_hit <= least_miss) return "it does not become more frequent";
   return "";
 }

@@ -31,12 +31,12 @@ io::Key key(const char* name, io::Dimension dimension, const char* unit, double 
 
 std::span<const MotionMeasure> motion_measures() {
   static const MotionMeasure k_measures[] = {
-      {key("pga", io::Dimension::acceleration, "gal", 1e-2, 1e3), "peak acceleration of the floor",
+      {key("pga", io::Dimension::acceleration, "gal", 1e-2, 1e3), "peak horizontal acceleration of the floor",
        [](const std::vector<Shake>& shakes, double duration) {
          return floor_peak(shakes, duration).acceleration;
        },
        itself, itself, 1, "pga=50 gal..2000 gal:24"},
-      {key("pgv", io::Dimension::velocity, "cm/s", 1e-4, 1e2), "peak velocity of the floor",
+      {key("pgv", io::Dimension::velocity, "cm/s", 1e-4, 1e2), "peak horizontal velocity of the floor",
        [](const std::vector<Shake>& shakes, double duration) {
          return floor_peak(shakes, duration).velocity;
        },

@@ -12,7 +12,7 @@ namespace topple::study {
 /// A measure is a row of the table in measures.cpp.
 struct MotionMeasure {
   io::Key key;        ///< name, dimension, unit and range of its axis
-  const char* title;  ///< "peak acceleration of the floor"
+  const char* title;  ///< "peak horizontal acceleration of the floor"
   double (*of)(const std::vector<Shake>& shakes, double duration);  ///< SI
   /// Proportional to a power of all amplitudes: what lognormal distributions are of. Of a value in the axis's
   /// unit, and back.

@@ -330,19 +330,28 @@ std::vector<Level> levels(const OverturnPlan& plan, const OverturnMap& map, int 
 }
 
 std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& map, int k) {
-  const Model& model = plan.scene.setup.model;
+  const Setup& own = plan.scene.setup;
   const Axis &along = map.fragility_along_y ? plan.y : plan.x,
              &other = map.fragility_along_y ? plan.x : plan.y;
   std::vector<FloorPeak> out;
   for (int i = 0; i < along.count(); ++i) {
-    Parameters parameters = plan.scene.setup.parameters;
+    Parameters parameters = own.parameters;
+    std::vector<std::string> changes;  // of what no edit reaches, such as what a building makes of the ground
     for (const auto& [axis, place] : {std::pair(&other, k), std::pair(&along, i)}) {
-      if (axis->table != "shake") continue;
-      std::optional<Edit> edit = io::parse_edit_key(axis->key);
-      if (!edit) return {};
-      set_at_once(model, axis->in_si(place), *edit, parameters);
+      if (!axis->key.starts_with("shake.")) continue;
+      changes.push_back(axis->change(place));
+      const std::optional<Edit> edit = io::parse_edit_key(axis->key);
+      if (edit && traits(edit->key).exists(own.model, parameters, edit->index))
+        set_at_once(own.model, axis->in_si(place), *edit, parameters);
+      else
+        parameters.shakes.clear();
     }
-    out.push_back(floor_peak(parameters.shakes, plan.scene.setup.run.duration));
+    if (parameters.shakes.empty() && !changes.empty()) try {
+        parameters = read_scene(plan, plan.scene, changes).setup.parameters;
+      } catch (const InputError&) {
+        return {};
+      }
+    out.push_back(floor_peak(parameters.shakes, own.run.duration));
   }
   return out;
 }

@@ -158,13 +158,13 @@ std::vector<FloorPeak> floor_peaks(const OverturnPlan& plan, const OverturnMap& 
 
 /// Intensities that fragility is told over besides the axis's own.
 struct GroundMeasure {
-  const char *name, *title, *unit;  ///< "pga", "peak acceleration of the floor", "gal"
+  const char *name, *title, *unit;  ///< "pga", "peak horizontal acceleration of the floor", "gal"
   double FloorPeak::*value;
   double si;  ///< value of one unit
 };
 inline constexpr GroundMeasure k_ground_measures[] = {
-    {"pga", "peak acceleration of the floor", "gal", &FloorPeak::acceleration, k_gal},
-    {"pgv", "peak velocity of the floor", "cm/s", &FloorPeak::velocity, 0.01}};
+    {"pga", "peak horizontal acceleration of the floor", "gal", &FloorPeak::acceleration, k_gal},
+    {"pgv", "peak horizontal velocity of the floor", "cm/s", &FloorPeak::velocity, 0.01}};
 
 /// `levels` with a measure of the floor's motion, in its unit, as their intensity.
 std::vector<Level> levels_over(const GroundMeasure& measure, std::vector<Level> levels,

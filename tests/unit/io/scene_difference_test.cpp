@@ -53,6 +53,15 @@ TEST(SceneDifference, what_is_chosen_where_it_is_left_out_is_what_the_run_takes)
   EXPECT_EQ(*of_alpha->a, value_text(*find_key("contact", "alpha"), alpha));
 }
 
+TEST(SceneDifference, what_is_chosen_for_each_scene_differs_where_both_leave_it_out) {
+  const Scene light = load_scene("refrigerator"), heavy = load_scene("refrigerator", {"cabinet.1.mass=200"});
+  const auto found = differences(light, heavy);
+  const auto of_alpha = std::ranges::find(found, "contact.alpha", &SceneDifference::key);
+  ASSERT_NE(of_alpha, found.end());
+  EXPECT_NE(*of_alpha->a, *of_alpha->b);
+  EXPECT_TRUE(differences(light, light).empty());
+}
+
 TEST(SceneDifference, an_entry_that_one_has_alone_is_one_line) {
   const Scene a = load_scene("paper-a");
   const Scene b = load_scene("paper-b");

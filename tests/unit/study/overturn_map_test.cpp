@@ -107,6 +107,16 @@ TEST(OverturnMap, peaks_of_the_floor_are_those_of_the_sine_the_pulse_and_the_rec
       EXPECT_NEAR(peaks[static_cast<std::size_t>(i)].velocity / (a / w), 1, 1e-3);
     }
   }
+  // however it begins: from rest it would come to twice that, with a taper to a third more
+  for (const char* start :
+       {"shake.1.initial_velocity=rest", "shake.1.initial_velocity=jump", "shake.1.taper=1"}) {
+    const io::Scene scene =
+        io::load_scene("paper-a", {"shake.1.frequency=0.5", "shake.1.amplitude=2", start});
+    EXPECT_NEAR(
+        floor_peak(scene.setup.parameters.shakes, scene.setup.run.duration).velocity / (2 / std::numbers::pi),
+        1, 1e-3)
+        << start;
+  }
   const OverturnPlan pulse = pulses("0.25..0.5:2", "4 m/s^2..6 m/s^2:2");
   const FloorPeak half = floor_peaks(pulse, gather(pulse, std::vector<std::string>(4)), 1).back();
   EXPECT_NEAR(half.acceleration / 6, 1, 1e-3);
@@ -121,6 +131,27 @@ TEST(OverturnMap, peaks_of_the_floor_are_those_of_the_sine_the_pulse_and_the_rec
                 record.y.values[static_cast<std::size_t>(i)] / record.y.values[0], 1e-9);
   }
   EXPECT_GT(scaled[0].acceleration, 0.5);
+}
+
+// What a building makes of the ground's sine follows its frequency and the building's period.
+TEST(OverturnMap, peaks_of_the_floor_of_a_building_are_those_of_the_point_of_the_map) {
+  const std::vector<std::string> building = {"shake.1.building={storey=5,of=7,period=0.65,damping=0.03}",
+                                             "shake.1.cycles=6", "run.duration=10"};
+  const io::Scene scene = io::load_scene("cabinet", building);
+  for (const auto* key : {"shake.1.frequency=0.6..3:2", "shake.1.building.period=0.3..1.2:2"}) {
+    SCOPED_TRACE(key);
+    const OverturnPlan plan = plan_overturn(scene, key, "shake.1.amplitude=1..2:2");
+    for (int k = 0; k < 2; ++k) {
+      std::vector<std::string> changes = building;
+      changes.push_back(plan.x.change(k));
+      changes.push_back("shake.1.amplitude=2");
+      const FloorPeak own =
+          floor_peak(io::load_scene("cabinet", changes).setup.parameters.shakes, scene.setup.run.duration);
+      const FloorPeak found = floor_peaks(plan, gather(plan, std::vector<std::string>(4)), k).back();
+      EXPECT_NEAR(found.acceleration / own.acceleration, 1, 1e-9) << k;
+      EXPECT_NEAR(found.velocity / own.velocity, 1, 1e-9) << k;
+    }
+  }
 }
 
 TEST(OverturnMap, runs_of_an_ensemble_do_not_depend_on_their_order) {

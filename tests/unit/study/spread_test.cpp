@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "solver/io/scene/scene.h"
 
@@ -58,6 +60,32 @@ TEST(Spread, what_was_not_begun_is_not_finished) {
   EXPECT_TRUE(trials[0].finished);
   EXPECT_FALSE(trials[1].finished);
   EXPECT_FALSE(trials[2].finished);
+}
+
+// A strap takes what it took at the scene's own shake when its strength is between: it breaks in the
+// stronger.
+TEST(Spread, fixings_that_break_are_told) {
+  const std::string strap =
+      "topple = 1\nfloor = {}\nrun = { duration = 2, want = [\"motion\"] }\n"
+      "shake = [{ type = \"sine\", frequency = 1, amplitude = 4 }]\n"
+      "wall = [{ name = \"wall\", at = [0, 0], normal = [1, 0, 0] }]\n"
+      "furniture = [{ kind = \"bookshelf\", name = \"shelf\", against = \"wall\" }]\n"
+      "fixing = [{ kind = \"strap\", body = \"shelf\", to = \"wall\", strength = ";
+  const auto broke = [&](const std::string& strength) {
+    const io::Scene scene = io::parse_scene(strap + strength + " }]", "s.toml");
+    std::vector<bool> out;
+    for (const Trial& trial : try_factors(scene.setup, {0.8, 1.25}, 1, [](int) { return true; }))
+      out.push_back(std::ranges::find(trial.broke, true) != trial.broke.end());
+    return out;
+  };
+  const io::Scene holding = io::parse_scene(strap + "1e6 }]", "s.toml");
+  topple::Run run(holding.setup);
+  while (run.status().ok() && !run.over()) run.advance();
+  double most = 0;
+  for (const AnchorOutcome& anchor : run.outcome().anchors()) most = std::max(most, anchor.peak_force);
+  ASSERT_GT(most, 10);
+  EXPECT_EQ(broke(std::to_string(most)), (std::vector<bool>{false, true}));
+  EXPECT_EQ(broke("1e6"), (std::vector<bool>{false, false}));
 }
 
 TEST(Spread, records_are_scaled_as_well) {

@@ -173,6 +173,24 @@ TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
   EXPECT_EQ(ended.err.find("is soft"), std::string::npos) << ended.err;
 }
 
+// Seats 420 mm wide, one turned by 30 degrees: their corners are 17 mm within each other.
+TEST_F(BadSceneTest, what_starts_a_little_within_its_neighbour_is_warned_of) {
+  const auto chairs = [](const char* yaw) {
+    return std::string(
+               "topple = 1\nfloor = {}\nrun = { duration = 1 }\nfurniture = [\n"
+               "{ kind = \"chair\", name = \"a\", at = [0, 0] },\n"
+               "{ kind = \"chair\", name = \"b\", at = [0, -0.48], yaw = \"") +
+           yaw + "\" }]\n";
+  };
+  write_bytes("turned.toml", chairs("30 deg"));
+  write_bytes("straight.toml", chairs("0 deg"));
+  const Ended turned = topple({"check", "turned.toml"}), straight = topple({"check", "straight.toml"});
+  EXPECT_EQ(turned.code, 0);
+  EXPECT_NE(turned.err.find("mm within each other: contact pushes them apart"), std::string::npos)
+      << turned.err;
+  EXPECT_EQ(straight.err.find("within each other"), std::string::npos) << straight.err;
+}
+
 TEST_F(BadSceneTest, a_room_that_bends_too_much_for_rigid_bodies_is_warned_of) {
   write_bytes("room.toml", shelves_of_books(5));
   write_bytes("few.toml", shelves_of_books(4));

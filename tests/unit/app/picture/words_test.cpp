@@ -23,6 +23,28 @@ TEST(Words, a_second_shake_is_not_left_out) {
   EXPECT_EQ(shake_in_words(two.setup.parameters, 0), "floor: 2 Hz, 400 gal, and 1 more");
 }
 
+TEST(Words, a_shake_that_shakes_nothing_now_says_when_it_does) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml", {"shake.1.start=1", "shake.1.cycles=4"});
+  EXPECT_EQ(shake_in_words(scene.setup.parameters, 0.5), "floor: 2 Hz, 400 gal, from 1 s on");
+  EXPECT_EQ(shake_in_words(scene.setup.parameters, 2), "floor: 2 Hz, 400 gal");
+  EXPECT_EQ(shake_in_words(scene.setup.parameters, 3.5), "floor: 2 Hz, 400 gal, over since 3 s");
+}
+
+TEST(Words, a_scene_whose_values_are_set_says_that_it_was_changed) {
+  const auto title = [](const io::Scene& scene) {
+    Parameters parameters = scene.setup.parameters;
+    const std::string read = title_in_words(scene, parameters);
+    apply({.key = Edit::Key::amplitude, .value = Vec3(2, 0, 0)}, scene.setup.model, 0, parameters);
+    return std::pair(read, title_in_words(scene, parameters));
+  };
+  using Titles = std::pair<std::string, std::string>;
+  const std::string plain = io::load_scene("paper-a").title, changed = plain + " (changed)";
+  EXPECT_EQ(title(io::load_scene("paper-a")), Titles(plain, changed));
+  EXPECT_EQ(title(io::load_scene("paper-a", {"run.duration=1"})), Titles(changed, changed));
+  EXPECT_EQ(title(io::load_scene("paper-a", {"run.duration=1", "title=\"Two\""})),
+            Titles("Two", "Two (changed)"));
+}
+
 TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
   const io::Scene scene = io::load_scene("classroom");
   const Model& model = scene.setup.model;

@@ -89,6 +89,13 @@ TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of
                                       100 * force / 2000)));
   EXPECT_TRUE(holds(html, "<td>50</td><td>1</td>"));
   EXPECT_TRUE(holds(html, "<td>breaks at "));
+  for (int k = 0; k < 21; ++k)
+    report_.trials.push_back(
+        {.factor = 1, .finished = true, .overturned = {false}, .open = {}, .broke = {k > 0, k > 12}});
+  const std::string tried = page();
+  EXPECT_TRUE(holds(tried, "broke in"));
+  EXPECT_TRUE(holds(tried, "20 of 21 runs"));
+  EXPECT_TRUE(holds(tried, "8 of 21 runs"));
 }
 
 TEST_F(ReportPageTest, anchors_that_are_not_in_place_are_said_to_be_so_and_hold_nothing) {
@@ -137,7 +144,7 @@ TEST(SvgChart, the_axis_of_a_low_chart_has_ticks_beside_zero) {
 TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
   for (int k = 0; k < 21; ++k)
     report_.trials.push_back(
-        {.factor = 0.95 + 0.005 * k, .finished = true, .overturned = {k >= 13}, .open = {}});
+        {.factor = 0.95 + 0.005 * k, .finished = true, .overturned = {k >= 13}, .open = {}, .broke = {}});
   const std::string html = page();
   EXPECT_TRUE(holds(html, "8 of 21 runs"));
   EXPECT_TRUE(holds(html, "<td>38 %</td><td>21\u201359 %</td>"));  // Wilson: 0.2075 to 0.5912
@@ -154,7 +161,7 @@ TEST_F(ReportPageTest, an_open_verdict_is_said_at_the_top_and_has_no_number) {
   e["bodies"][0] = {{"name", "free"},           {"same_verdict", false},   {"overturn_time_s", nullptr},
                     {"peak_tilt_deg", nullptr}, {"peak_slide_m", nullptr}, {"peak_stress_Pa", nullptr}};
   const std::string html = page();
-  EXPECT_TRUE(holds(html, "A finer computation gives another verdict (section 3)"));
+  EXPECT_TRUE(holds(html, "A finer computation takes another course (section 3)"));
   EXPECT_TRUE(holds(html, "“free” stays standing, but overturns in the finer run"));
   EXPECT_FALSE(holds(html, " ± 0"));
 }
@@ -194,8 +201,8 @@ TEST_F(ReportTest, the_page_is_one_file_that_refers_to_nothing) {
       EXPECT_EQ(plain.compare(plain.find('"', at) + 1, 5, "data:"), 0) << plain.substr(at, 40);
   for (const char* part :
        {"A cabinet for tests", "400 gal", "JMA ", "instrumental intensity", "critical angle", "0 of 21 runs",
-        "95 % interval (Wilson)", "half the step (0.5 ms)", "Not validated against experiment",
-        "50 kgf (490.33 N)", "topple " TOPPLE_VERSION,
+        "95 % interval (Wilson)", "half the step (0.5 ms, and half the parts of rigid and elastic bodies)",
+        "Not validated against experiment", "50 kgf (490.33 N)", "topple " TOPPLE_VERSION,
         "central differences",  // of its elastic model; generalized-alpha moves frames alone
         "data:image/png;base64,iVBORw0KGgo"})
     EXPECT_TRUE(holds(html, part)) << part;

@@ -443,6 +443,65 @@ TEST(Island, forces_between_bodies_are_those_that_move_them) {
   EXPECT_LT(missing[missing.size() / 2], 0.03);
 }
 
+// Loads and energy are those of all touches, each of which is listed, or one at its place stands for it.
+TEST(Island, what_members_that_meet_in_a_corner_touch_counts_once) {
+  for (const double turn : {0., 1e-3, 0.02}) {
+    SCOPED_TRACE(turn);
+    topple::Setup setup = row(2, -0.01, BodyModel::rigid);
+    setup.run.settle = false;
+    std::vector<BodyState> bodies = simulate(setup).state.bodies;
+    bodies[1].rotation = Quat(1, turn, 0, 2 * turn).normalized();
+    bodies[1].velocity = Vec3(-0.3, 0.1, 0);
+    const std::vector<Vec3> positions = start_state(setup.model, setup.starts).position;
+    NearSearch search(setup.model);
+    MemberCoupling coupling(setup.model, {0, 1}, search.find(positions, 0.05), bodies);
+    for (int b = 0; b < 2; ++b) coupling.place(b, bodies[b]);
+    coupling.start();
+    std::mt19937 rng(3);
+    const Vec3 stick = 1e-4 * random_vector(rng);
+    for (MemberPair& pair : coupling.pairs()) pair.stick.fill(stick);
+    std::vector<int> all(coupling.pairs().size());
+    std::iota(all.begin(), all.end(), 0);
+    ContactLaw law = setup.parameters.contact;
+    law.friction = 10;  // sticks
+    MemberContacts each, merged;
+    PairPlaces places;
+    const std::span<const MemberPair> pairs = coupling.pairs();
+    find_member_contacts(law, pairs, coupling.position(), coupling.velocity(), coupling.position(), each);
+    find_merged_contacts(law, pairs, all, coupling.position(), coupling.velocity(), coupling.position(), true,
+                         places, merged);
+    ASSERT_FALSE(each.touches.empty());
+    if (turn < 0.01)  // then most meet along their whole length, at their four ends
+      EXPECT_LE(3 * merged.touches.size(), 2 * each.touches.size());
+    else
+      EXPECT_LT(merged.touches.size(), each.touches.size());
+    std::vector<std::pair<int, int>> listed, expected;
+    double weight = 0, whole = 0;
+    for (const MemberTouch& touch : merged.touches) {
+      merged.each_place(touch, [&](int pair, int place) { listed.emplace_back(pair, place); });
+      weight += touch.weight;
+    }
+    for (const MemberTouch& touch : each.touches) {
+      expected.emplace_back(touch.pair, touch.place);
+      whole += touch.weight;
+    }
+    ranges::sort(listed);
+    ranges::sort(expected);
+    EXPECT_EQ(listed, expected);
+    EXPECT_NEAR(weight, whole, 1e-12 * whole);
+    const double energy = stored_energy(law, each, pairs);
+    EXPECT_NEAR(stored_energy(law, merged, pairs), energy, 1e-9 * energy);
+    const std::vector<BodyVelocity> loads = coupling.loads(each, pairs), own = coupling.loads(merged, pairs);
+    // of touches of different weights the lighter ones are damped more, and slip earlier when they are alone
+    for (std::size_t b = 0; b < 2; ++b) {
+      EXPECT_LT((unpacked(own[b].linear) - unpacked(loads[b].linear)).norm(),
+                1e-6 * unpacked(loads[b].linear).norm());
+      EXPECT_LT((unpacked(own[b].angular) - unpacked(loads[b].angular)).norm(),
+                1e-6 * unpacked(loads[b].angular).norm());
+    }
+  }
+}
+
 // A wall of members holds a body back as one does that is a plane.
 TEST(Island, cabinet_leans_against_a_wall_of_members) {
   for (const BodyModel model : {BodyModel::rigid, BodyModel::elastic}) {

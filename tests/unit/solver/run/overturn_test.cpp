@@ -128,11 +128,14 @@ TEST(Overturn, barrier_is_the_weight_times_the_rise_to_above_the_edge) {
     EXPECT_NEAR(barrier.left, body.mass * k_g * (height(k_edge_angle) - height(angle)), 1e-9) << angle;
     EXPECT_NEAR(barrier.whole, body.mass * k_g * (height(k_edge_angle) - height(0)), 1e-9) << angle;
   }
-  // leaning to its wide side it falls over the narrow one as easily as upright
-  const OverturnBarrier upright = barrier_alone(s.model, turned(s.model, Vec3::Zero())),
-                        aside = barrier_alone(s.model, turned(s.model, 0.02 * Vec3::UnitX()));
-  EXPECT_EQ(aside.left, upright.whole);
-  EXPECT_EQ(aside.whole, upright.whole);
+  // leaning to its wide side, both are of that one; upright of the narrow one
+  const double wide = std::hypot(k_breadth / 2, k_height), wide_angle = std::atan2(k_breadth / 2, k_height);
+  const OverturnBarrier aside = barrier_alone(s.model, turned(s.model, 0.02 * Vec3::UnitX()));
+  EXPECT_NEAR(aside.left, body.mass * k_g * wide * (1 - std::cos(wide_angle - 0.02)), 1e-9);
+  EXPECT_NEAR(aside.whole, body.mass * k_g * wide * (1 - std::cos(wide_angle)), 1e-9);
+  const OverturnBarrier upright = barrier_alone(s.model, turned(s.model, Vec3::Zero()));
+  EXPECT_NEAR(upright.left, body.mass * k_g * (height(k_edge_angle) - height(0)), 1e-9);
+  EXPECT_EQ(upright.whole, upright.left);
   EXPECT_EQ(barrier_alone(s.model, turned(s.model, 0.3 * Vec3::UnitY())).left, 0);
   EXPECT_TRUE(std::isinf(barrier_alone(sled(1, 0.06, 0.03), turned(s.model, Vec3::Zero())).left));
 }
