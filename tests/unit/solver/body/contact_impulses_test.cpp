@@ -122,34 +122,6 @@ TEST(ContactImpulses, energy_and_momentum_go_where_they_are_booked) {
   EXPECT_GT(slipped, 0);
 }
 
-// Members that end in one corner touch another body at one place: a contact with the sum of what they are.
-TEST(ContactImpulses, contacts_at_one_place_are_one) {
-  const ContactLaw law = stiff_law();
-  const PreparedLaw prepared(law);
-  const auto velocity = [&](int parts, std::vector<int>& numbers) {
-    ContactImpulses impulses;
-    impulses.begin(prepared, k_h);
-    for (const double side : {1., -1.}) impulses.add(ball(Vec3(0, 0, -side), Vec3::Zero()), {});
-    for (const double x : {-0.2, 0.3})
-      for (int k = 0; k < parts; ++k) {
-        NearContact contact = under(Vec3(x, 0.1, -0.5), -1e-4, law);
-        contact.arm[1] = Vec3(x, 0.1, 0.5);
-        for (double* const part : {&contact.alpha, &contact.stick_stiffness, &contact.stick_damping})
-          *part /= parts;
-        numbers.push_back(impulses.add(0, 1, 1, true, contact));
-      }
-    BlockLu matrix(2, {{1, 0}});
-    EXPECT_TRUE(impulses.solve(matrix));
-    return impulses.velocities()[0];
-  };
-  std::vector<int> apart, together;
-  const ContactImpulses::Velocity one = velocity(1, apart), three = velocity(3, together);
-  EXPECT_EQ(apart, (std::vector{0, 1}));
-  EXPECT_EQ(together, (std::vector{0, 0, 0, 1, 1, 1}));
-  EXPECT_LT(unpacked(one.linear - three.linear).norm(), 1e-6 * unpacked(one.linear).norm());
-  EXPECT_LT(unpacked(one.angular - three.angular).norm(), 1e-6 * unpacked(one.angular).norm());
-}
-
 // A spring that slipped holds mu N/k, along the way.
 TEST(ContactImpulses, stick_springs_are_cut_to_what_friction_bears) {
   const ContactLaw law = stiff_law();
