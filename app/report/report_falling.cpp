@@ -203,10 +203,6 @@ std::string holding_table(ReportPage& page) {
   return page.table(head, rows) + (assumed ? page.paragraph(page.say(words::k_assumed_fixings), "note") : "");
 }
 
-}  // namespace
-
-namespace {
-
 /// Bodies that no anchor holds, and that fare differently without those of the others.
 std::string differ_unheld(const ReportPage& page, const ordered_json& without) {
   const Model& model = page.report().scene->setup.model;
