@@ -234,14 +234,14 @@ std::string chance_line(const ordered_json& b) {
       fell ? "keep it upright" : "topple it");
 }
 
-std::string anchor_line(const ordered_json& a) {
+std::string anchor_line(const ordered_json& a, const char* when) {
   const double peak = a["peak_force_N"].get<double>();
   std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
   if (was_never_in_place(a))
     return line + fmt::format("anchor {}: not in place\n", a["name"].get<std::string>());
   line += fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
   if (a["broke"].get<bool>())
-    return line + fmt::format(", broke at {}\n", text(a["break_time_s"], "{:.4f} s"));
+    return line + fmt::format(", broke at {} {}\n", text(a["break_time_s"], "{:.4f}"), when);
   if (!a["strength_N"].is_null())
     line += ", " + percent_of(peak, a["strength_N"].get<double>()) + " of its strength";
   if (!a["in_place"].get<bool>()) return line + ", taken away\n";
@@ -293,13 +293,15 @@ std::string energy_in_words(const ordered_json& e) {
 }
 
 std::string summary_table(const ordered_json& s) {
-  std::string out = s["analysis"] == "static" ? static_head(s) : dynamic_head(s);
+  const bool is_static = s["analysis"] == "static";
+  const char* const when = is_static ? "of path" : "s";  // a static run has no time
+  std::string out = is_static ? static_head(s) : dynamic_head(s);
   int width = 14;
   for (const auto& b : s["bodies"])
     width = std::max(width, static_cast<int>(letters(b["name"].get<std::string>())));
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
                      "uplift", "impacts", "peak tilt", "final tilt", "peak slide", "peak stress");
-  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, "s", "s", "",
+  out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, when, when, "",
                      "deg", "deg", "mm", "MPa");
   for (const auto& b : s["bodies"]) {
     out += fmt::format(
@@ -314,12 +316,12 @@ std::string summary_table(const ordered_json& s) {
   out += model_lines(s["bodies"]);
   for (const auto& b : s["bodies"])
     if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
-      out += fmt::format("{}: leaned beyond its critical angle, first at {} s, and came back\n",
-                         b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"));
-  for (const auto& b : s["bodies"]) out += lately_line(b, s["simulated_s"]);
-  for (const auto& b : s["bodies"]) out += chance_line(b);
+      out += fmt::format("{}: leaned beyond its critical angle, first at {} {}, and came back\n",
+                         b["name"].get<std::string>(), text(b["first_beyond_critical_s"], "{:.3f}"), when);
+  for (const auto& b : s["bodies"])
+    if (!is_static) out += lately_line(b, s["simulated_s"]) + chance_line(b);
   for (const auto& b : s["bodies"]) out += damage_line(b);
-  for (const auto& a : s["anchors"]) out += anchor_line(a);
+  for (const auto& a : s["anchors"]) out += anchor_line(a, when);
   for (const auto& w : s["wedges"]) out += wedge_line(w) + "\n";
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"]);

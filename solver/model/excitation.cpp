@@ -142,7 +142,7 @@ std::span<const ShakeTraits> shake_kinds() {
 }
 
 double ParameterRamp::share(double t) const {
-  if (t >= since + over) return 1;
+  if (over == 0 || t >= since + over) return 1;  // without a ramp at t < 0 too: statics' load factor
   return (1 - elementary::cos(k_pi * std::max(t - since, 0.) / over)) / 2;
 }
 

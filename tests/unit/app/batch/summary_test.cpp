@@ -100,6 +100,20 @@ TEST_F(SummaryTest, bodies_that_were_computed_alike_share_a_line) {
   EXPECT_NE(table.find("\nb: rigid from 0.000 s"), std::string::npos) << table;
 }
 
+TEST_F(SummaryTest, a_static_run_has_no_seconds) {
+  Json s = summary(scene_, run_, "completed", 0);
+  s["analysis"] = "static";
+  s["static"] = Json::array();
+  s["simulated_s"] = 1;
+  Json& body = s["bodies"][0];
+  body["overturned"] = true;
+  body["overturn_time_s"] = 0.9958;
+  body["final_tilt_deg"] = 8.3;
+  const std::string table = summary_table(s);
+  EXPECT_NE(table.find("of path   of path"), std::string::npos) << table;
+  EXPECT_EQ(table.find("longer run"), std::string::npos) << table;
+}
+
 TEST_F(SummaryTest, what_is_beyond_its_critical_angle_as_the_run_ends_may_come_back) {
   Json s = summary(scene_, run_, "completed", 0);
   s["simulated_s"] = 10;

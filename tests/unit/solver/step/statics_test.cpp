@@ -323,8 +323,8 @@ TEST(Statics, continuing_from_a_checkpoint_gives_the_same_hashes) {
   }
 }
 
-// Friction and weight hold a cabinet that is pushed at its top, until its far edge carries all of it.
-TEST(Statics, cabinet_on_a_floor_takes_a_push_until_it_tips) {
+// On a floor, pushed along x at its top by its weight at four nodes; `node`: one of them.
+topple::Setup pushed_cabinet(int& node) {
   topple::Setup setup;
   setup.model = steel_model();
   const CabinetSpec spec = tall_cabinet();
@@ -333,17 +333,58 @@ TEST(Statics, cabinet_on_a_floor_takes_a_push_until_it_tips) {
   for (int i = 0; i < setup.model.node_total(); ++i) {
     const Vec3& x = setup.model.node_position[i];
     const bool corner = std::abs(std::abs(x.x()) - 0.19) < 1e-9 && std::abs(std::abs(x.y()) - 0.44) < 1e-9;
-    if (corner && x.z() > 1.5) setup.model.loads.push_back({i, {10 * k_g, 0, 0}, Vec3::Zero(), {}});
+    if (!corner || x.z() <= 1.5) continue;
+    setup.model.loads.push_back({i, {10 * k_g, 0, 0}, Vec3::Zero(), {}});
+    node = i;
   }
-  ASSERT_EQ(setup.model.loads.size(), 4u);
   setup.parameters.contact.alpha = 5e4 * k_g;
   setup.run.analysis = Analysis::statics;
+  return setup;
+}
+
+// Friction and weight hold a cabinet that is pushed at its top, until its far edge carries all of it.
+TEST(Statics, cabinet_on_a_floor_takes_a_push_until_it_tips) {
+  int node = -1;
+  const topple::Setup setup = pushed_cabinet(node);
+  ASSERT_EQ(setup.model.loads.size(), 4u);
   topple::Run run(setup);
   ASSERT_TRUE(run.status().ok()) << run.status().message(setup.model);
   while (!run.over()) run.advance();
   EXPECT_EQ(run.status().kind, StepStatus::Kind::no_equilibrium);
   // 40 kg g 0.19 m against 40 kg g at 1.79 m; a little less on an edge that gives way
   EXPECT_NEAR(run.state().load_factor, 0.19 / 1.79, 0.02 * 0.19 / 1.79);
+}
+
+// With its top moved it is followed over the balance point, where what pushed it has to hold it back.
+TEST(Statics, cabinet_is_followed_over_its_balance_point) {
+  int node = -1;
+  topple::Setup setup = pushed_cabinet(node);
+  setup.run.statics.control = PathControl{.node = node, .direction = 0, .to = 0.4, .arc_length = false};
+  setup.run.statics.load_steps = 40;
+  topple::Run run(setup);
+  int compared = 0;
+  while (!run.over()) {
+    run.advance();
+    const State& state = run.state();
+    Vec3 centre = Vec3::Zero();
+    double mass = 0, edge = 0;
+    for (int i = 0; i < setup.model.node_total(); ++i) {
+      centre += setup.model.node_mass[i] * state.position[i];
+      mass += setup.model.node_mass[i];
+      const Vec3& x = setup.model.node_position[i];
+      if (x.x() > 0.189 && x.z() < 0.1) edge = state.position[i].x();
+    }
+    centre /= mass;
+    if (state.position[node].x() < setup.model.node_position[node].x() + 0.1) continue;
+    // about the edge: 40 kg g by the load factor, at the pushed nodes, against the weight
+    const double exact = (edge - centre.x()) / state.position[node].z();
+    // the floor gives way by its contact's depth, and the edge carries from there
+    EXPECT_NEAR(state.load_factor, exact, 2e-3) << centre.x();
+    ++compared;
+  }
+  EXPECT_TRUE(run.status().ok()) << run.status().message(setup.model);
+  EXPECT_LT(run.state().load_factor, -0.01);
+  EXPECT_GT(compared, 10);
 }
 
 TEST(Statics, own_weight_bends_every_body_alike) {
