@@ -170,11 +170,11 @@ void warn_of_energy(const Run& run, Warnings& list) {
     list.push_back(fmt::format("energy balance error {:.1e} (of the {:.2g} J exchanged) is above {:.0e}; {}",
                                balance, e.largest, k_good_balance, finer));
   if (e.largest >= k_numbers_of_interest && std::abs(e.model_switch) > k_switched * e.largest)
-    list.push_back(fmt::format(
-        "bodies that changed their model in a blow {} {:.3g} J, {:.0f} % of the largest energy exchanged; "
-        "model = \"frame\" follows them through it",
-        e.model_switch > 0 ? "got" : "lost", std::abs(e.model_switch),
-        100 * std::abs(e.model_switch) / e.largest));
+    list.push_back(
+        fmt::format("bodies that changed their model {} {:.3g} J, {:.0f} % of the largest energy exchanged; "
+                    "model = \"frame\" follows them through it",
+                    e.model_switch > 0 ? "got" : "lost", std::abs(e.model_switch),
+                    100 * std::abs(e.model_switch) / e.largest));
   const double share = std::abs(e.numerical) / e.largest;
   if (e.largest < k_numbers_of_interest || share < k_numerical) return;
   const Parameters& p = run.parameters();
@@ -205,6 +205,10 @@ void warn_of_shakes(const std::vector<Shake>& shakes, double output_rate, std::v
 
 std::vector<std::string> run_warnings(const Run& run) {
   Warnings list;
+  if (run.counted_from() > 0)
+    list.push_back(fmt::format(
+        "it went on from a recording: peaks, impacts, falls and anchors are counted from {:.3f} s on",
+        run.counted_from()));
   warn_of_depth(run, list);
   warn_of_shakes(run.parameters().shakes, run.setup().run.output_rate, list);
   warn_of_stress(run, list);

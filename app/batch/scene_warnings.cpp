@@ -152,7 +152,7 @@ std::optional<double> early_tipping(const Model& model, const Parameters& p) {
   for (int b = 0; b < model.furniture_total(); ++b) {
     if (!study::why_not_standing(model, b).empty()) continue;
     const study::Standing body = study::standing(model, p, b);
-    early = std::max(*early, 1 - study::tipping_limit(body, p.contact) / body.rigid_limit());
+    early = std::max(*early, 1 - study::tipping_limit(body, p.contact) / study::stiff_limit(body, p.contact));
   }
   return early;
 }
@@ -178,8 +178,7 @@ std::string soft_contact_warning(const Setup& setup, const Parameters& p) {
   return fmt::format(
       "contact.alpha = {:.4g} kgf is soft: under a steady push a body lifts a side, and may tip, at up to "
       "{:.0f} % less acceleration than on a rigid floor, in a shake at still less; {:.0f} kgf keeps that of "
-      "a "
-      "steady push below {:g} %; no alpha at all takes {:.0f} kgf, with which it lands as on a rigid floor "
+      "a steady push below {:g} %; no alpha at all takes {:.0f} kgf, with which it lands as on a rigid floor "
       "too",
       p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
       rounded_up(alpha_for_tipping(model, p) / k_standard_gravity), 100 * k_hardly,

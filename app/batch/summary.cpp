@@ -216,6 +216,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   if (!run.status().ok()) out["message"] = run.status().message(run.setup().model);
   out["analysis"] = is_static(run.setup()) ? "static" : "dynamic";
   out["simulated_s"] = number(state.time);
+  if (run.counted_from() > 0) out["counted_from_s"] = number(run.counted_from());
   out["wall_s"] = number(wall_s);
   out["realtime_factor"] =
       wall_s > 0 && !is_static(run.setup()) ? number(state.time / wall_s) : ordered_json(nullptr);

@@ -129,8 +129,10 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
       : !body["first_beyond_critical_s"].is_null() ? " until it leans by half of its critical angle"
                                                    : "";
   const double error = estimate.get<double>();
-  return error < k_least_error ? "; off from a frame by less than 0.1 %" + bounds
-                               : fmt::format("; off from a frame by about {:.2g} %{}", 100 * error, bounds);
+  const std::string off =
+      error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error);
+  const char* const feet = change["model"] == "elastic" ? "but for friction at its feet " : "";
+  return fmt::format("; {}off from a frame by {}{}", feet, off, bounds);
 }
 
 // Of the model that a body begins with.

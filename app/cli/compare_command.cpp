@@ -174,6 +174,7 @@ ordered_json side_json(const Side& side) {
           {"scene", side.scene.name},
           {"title", side.scene.title},
           {"status", side.summary.is_null() ? ordered_json("interrupted") : side.summary["status"]},
+          {"counted_from_s", side.summary.is_null() ? 0. : side.summary.value("counted_from_s", 0.)},
           {"simulated_s", side.summary.is_null() ? ordered_json(nullptr) : side.summary["simulated_s"]}};
 }
 
@@ -256,6 +257,9 @@ std::string tables(const ordered_json& result) {
   for (const ordered_json& p : result["parameters"]) parameters.row(p["key"], value(p["a"]), value(p["b"]));
   outcomes.row("outcome", "A: " + a, "B: " + b);
   outcomes.row("status", result["a"]["status"], result["b"]["status"]);
+  if (result["a"]["counted_from_s"] != result["b"]["counted_from_s"])
+    outcomes.row("peaks, times and anchors counted from, s", text(result["a"], "counted_from_s", 1, 3),
+                 text(result["b"], "counted_from_s", 1, 3));
   for (const ordered_json& body : result["bodies"]) add_outcome(outcomes, body);
   for (const ordered_json& one : result["anchors"])
     outcomes.row(fmt::format("{} on {}: greatest force, N", one["name"].get<std::string>(),

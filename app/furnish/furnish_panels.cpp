@@ -331,6 +331,21 @@ void FurnishView::draw_bar() {
   ImGui::End();
 }
 
+namespace {
+
+// What a fixing of this kind may lead to, but for the ceiling.
+std::string fixing_targets(const std::string& kind) {
+  const io::FixingTraits& fixing = *std::ranges::find(io::k_fixings, kind, &io::FixingTraits::word);
+  std::string targets;
+  for (const auto& [may, words] :
+       {std::pair(fixing.to_wall, &fw::k_hint_to_wall), std::pair(fixing.to_floor, &fw::k_hint_to_floor),
+        std::pair(fixing.to_body, &fw::k_hint_to_piece)})
+    if (may) targets = targets.empty() ? say(*words) : say(fw::k_hint_or, targets, say(*words));
+  return targets;
+}
+
+}  // namespace
+
 std::string FurnishView::hint() const {
   switch (tool_.kind) {
     case Tool::Kind::place:
@@ -344,7 +359,7 @@ std::string FurnishView::hint() const {
     case Tool::Kind::fixing: {
       const std::string kind = fw::in_words(fw::k_fixing_kinds, tool_.word);
       return tool_.body.empty() ? say(fw::k_hint_fixing_from, kind)
-                                : say(fw::k_hint_fixing_to, kind, tool_.body);
+                                : say(fw::k_hint_fixing_to, kind, tool_.body, fixing_targets(tool_.word));
     }
     case Tool::Kind::select:
       break;

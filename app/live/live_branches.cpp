@@ -1,5 +1,6 @@
 // What a live run reads of a recording, and how it returns to an instant of the past.
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "app/batch/load_steps.h"
 #include "app/live/live_worker.h"
@@ -10,6 +11,13 @@ namespace {
 
 constexpr std::size_t k_rows_at_once = 256;
 constexpr std::int64_t k_return_steps = 50;  // between two polls of the stop flag
+constexpr double k_longest_repeat = 10;      // s, of wall time
+
+bool took_little(const std::string& summary) {
+  const auto told = nlohmann::json::parse(summary, nullptr, false);
+  return told.is_object() && told.contains("wall_s") && told["wall_s"].is_number() &&
+         told["wall_s"].get<double>() < k_longest_repeat;
+}
 
 }  // namespace
 
@@ -25,6 +33,7 @@ void LiveWorker::read_recording() {
       report.edits.push_back(history_.edits[read_edits_]);
   });
   read_rows();
+  repeats_ = took_little(from.summary_json());
   try {
     while (static_cast<std::int64_t>(read_checkpoints_.size()) < from.checkpoint_count() && !stop_)
       read_checkpoints_.push_back(from.checkpoint(static_cast<std::int64_t>(read_checkpoints_.size())));
@@ -89,7 +98,8 @@ void LiveWorker::start_recording(const std::string& arithmetic) {
 }
 
 // From the nearest checkpoint before it, of this run or of the recording that it replays; not from one at the
-// start, where each branch begins with its own edits.
+// start, where each branch begins with its own edits. What came before a checkpoint of a recording is not
+// known to a run that begins there: one that takes little time begins at the start.
 Run LiveWorker::run_before(std::int32_t branch, std::int64_t step) const {
   const std::vector<Stretch> way = history_.way_to(branch);
   const auto on_way = [&](std::int32_t id, std::int64_t at) {
@@ -104,7 +114,7 @@ Run LiveWorker::run_before(std::int32_t branch, std::int64_t step) const {
       nearest = &point;
   const io::Checkpoint* read = nullptr;
   for (const io::Checkpoint& checkpoint : read_checkpoints_)
-    if (on_way(checkpoint.branch, checkpoint.step) && (!read || checkpoint.step >= read->step))
+    if (!repeats_ && on_way(checkpoint.branch, checkpoint.step) && (!read || checkpoint.step >= read->step))
       read = &checkpoint;
   if (nearest && (!read || nearest->run.state.step >= read->step)) {
     RunPoint point = nearest->run;

@@ -158,6 +158,7 @@ class LiveWorker {
   History history_;
   std::vector<Point> points_;
   std::int64_t read_rows_ = 0;  // of the recording that is replayed
+  bool repeats_ = false;        // from its start rather than from its checkpoints
   std::vector<io::Checkpoint> read_checkpoints_;
   std::size_t read_events_ = 0, read_edits_ = 0, read_branches_ = 0;
   bool going_ = false;

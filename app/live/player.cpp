@@ -109,6 +109,14 @@ void Player::take(LiveReport&& report) {
     stabilities_[{told.branch, told.step}] = told.stability;
   if (report.head) head_ = std::move(report.head);
   if (!report.anchor_peaks.empty()) anchor_peaks_ = std::move(report.anchor_peaks);
+  // a branch begins with rows of others, which may come after it was told
+  const std::vector<Stretch> stretches =
+      history_.branches.empty() ? std::vector<Stretch>() : history_.way_to(shown_);
+  const auto is_shown = [&](const io::FrameRow& row) {
+    return std::ranges::any_of(stretches, [&](const Stretch& s) {
+      return s.branch == row.branch && (s.branch == shown_ || row.step < s.last_step);
+    });
+  };
   for (RowPtr& row : report.rows) {
     std::vector<RowPtr>& own = rows_[row->branch];
     if (row->step == 0 && own.size() == 1) {  // edits at the start changed it
@@ -116,7 +124,7 @@ void Player::take(LiveReport&& report) {
       rebuild = true;
       continue;
     }
-    if (row->branch == shown_ && !rebuild) extend_way(row);
+    if (!rebuild && is_shown(*row)) extend_way(row);
     keep(std::move(row));
   }
   if (rebuild) rebuild_way();

@@ -323,11 +323,14 @@ void draw_anchor(const Parameter& of) {
   const std::string called = also.empty() ? anchor.name : anchor.name.substr(0, anchor.name.rfind('-'));
   const auto name = [&](int body) { return of.model().bodies[static_cast<std::size_t>(body)].name; };
   const auto row = of.player.row();
-  bool broke = false;
+  std::size_t broke = 0;
   for (std::size_t k = index; row && k <= index + also.size(); ++k)
-    broke |= row->anchor[k].state == io::k_anchor_broken;
+    broke += row->anchor[k].state == io::k_anchor_broken;
+  const bool all = broke > also.size();
   const std::string& to = anchor.other.body < 0 ? anchor.leads_to : name(anchor.other.body);
-  of.row().tick(broke ? say(k_anchor_broke, called) : called,
+  of.row().tick(broke == 0 ? called
+                : all      ? say(k_anchor_broke, called)
+                           : say(k_anchor_broke_in_part, called, broke, also.size() + 1),
                 to.empty() ? say(k_anchor_about, name(anchor.body))
                            : say(k_anchor_between_about, name(anchor.body), to),
                 also);

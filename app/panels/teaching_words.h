@@ -181,13 +181,13 @@ inline constexpr Phrase k_gentle_end{
     "重力加速度の5分の1に満たない加速度でも転倒しました。重要なのは揺れの強さだけでなく、同じ向きに押し続ける"
     "時間です。"};
 inline constexpr Phrase k_violent_start{
-    "Now 2 Hz at 700 gal: nearly four times the acceleration, in a quarter of the time. The floor swings by "
-    "only a few centimetres each way.",
-    "今度は 2 Hz、700 gal。加速度は約4倍、周期は4分の1です。床の揺れは片側数センチにすぎません。"};
+    "Now 2 Hz at 700 gal: nearly four times the acceleration, but it pushes one way for a quarter of the "
+    "time.",
+    "今度は 2 Hz、700 gal。加速度は約4倍ですが、同じ向きに押す時間は4分の1です。"};
 inline constexpr Phrase k_violent_uplift{
-    "The body lifts at once, since 700 gal is far above West's line. Yet the floor will turn round in a "
-    "quarter of a second.",
-    "700 gal は West の線を大きく超えるため、すぐに浮き上がります。しかし床は4分の1秒で向きを変えます。"};
+    "The body lifts at once, since 700 gal is far above West's line. Yet a quarter of a second after it "
+    "began the push turns round.",
+    "700 gal は West の線を大きく超えるため、すぐに浮き上がります。しかし押す向きは4分の1秒で変わります。"};
 inline constexpr Phrase k_violent_impact{
     "It strikes the floor on its other side and loses energy. Each blow takes away some of what the floor "
     "has put "

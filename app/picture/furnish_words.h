@@ -69,9 +69,12 @@ inline constexpr Phrase k_hint_person{
     "人：揺れ始めにいる場所（床またはベッドの上）をクリックしてください。"};
 inline constexpr Phrase k_hint_fixing_from{"{0}: click the piece that it holds.",
                                            "{0}：固定する家具をクリックしてください。"};
-inline constexpr Phrase k_hint_fixing_to{
-    "{0}: click what it holds {1} to: a wall, the floor or another piece.",
-    "{0}：{1} の取り付け先（壁・床・別の家具）をクリックしてください。"};
+inline constexpr Phrase k_hint_fixing_to{"{0}: click what it holds {1} to: {2}.",
+                                         "{0}：{1} の取り付け先（{2}）をクリックしてください。"};
+inline constexpr Phrase k_hint_to_wall{"a wall", "壁"};
+inline constexpr Phrase k_hint_to_floor{"the floor", "床"};
+inline constexpr Phrase k_hint_to_piece{"another piece", "別の家具"};
+inline constexpr Phrase k_hint_or{"{0} or {1}", "{0}・{1}"};
 inline constexpr Phrase k_checking{"checking …", "確認中…"};
 inline constexpr Phrase k_furnishing{"furnishing", "配置中"};
 

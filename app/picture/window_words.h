@@ -251,6 +251,7 @@ inline constexpr Phrase k_stresses_wanted_about{
     "モデルが「auto」の家具について、運動に加えて応力も計算する"};
 inline constexpr Phrase k_model{"model", "モデル"};
 inline constexpr Phrase k_anchor_broke{"{0} (broken)", "{0}（破断）"};
+inline constexpr Phrase k_anchor_broke_in_part{"{0} ({1} of {2} broken)", "{0}（{2}点中{1}点破断）"};
 inline constexpr Phrase k_anchor_about{
     "ties {0} to the wall or floor. One that is put in place while it runs starts without force",
     "{0} を壁または床に固定する。計算の途中で取り付けた時点の力は0"};

@@ -219,9 +219,10 @@ std::string anchor_in_words(const Model& model, const io::FrameRow& row, std::si
   const Anchor& anchor = model.anchors[k];
   const io::AnchorNumbers& now = row.anchor[k];
   const std::string type = anchor.fixing.empty() ? anchor_type(anchor) : anchor.fixing;
-  const std::string own = anchor.name == type                   ? ""
-                          : anchor.name.starts_with(type + "-") ? anchor.name.substr(type.size())
-                                                                : " " + anchor.name;
+  const bool says_type = anchor.name.starts_with(type + "-") || anchor.name.starts_with(type + " ");
+  const std::string own = anchor.name == type ? ""
+                          : says_type         ? anchor.name.substr(type.size())
+                                              : " " + anchor.name;
   const std::string line = anchor_type_in_words(anchor) + own + say(k_colon);
   const float state = io::anchor_state(anchor, now);
   if (state != io::k_anchor_holds || now.tension == 0) return line + say(phrase_of_state(state));

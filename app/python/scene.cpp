@@ -30,7 +30,8 @@ std::string toml(py::handle value) {
 
 double number(const SceneText& self, const std::string& key) {
   const io::SceneNumber found = io::number_in(*self.scene(), key);
-  if (!found.value) throw io::InputError(key + ": the scene leaves it out, and it has no default");
+  if (!found.value)
+    throw io::InputError(key + ": the scene leaves it out or has no number there, and it has no default");
   return *found.value;
 }
 

@@ -138,7 +138,7 @@ inline constexpr Phrase k_table_note{
     "the edge of the base) for good "
     "before the run ends; its column tells that of the direction in which the body leaned most, an edge's "
     "where it leaned across "
-    "one. "
+    "one, and the nearest edge's of a body that leaned by less than {1}°. "
     "Slide: travel of the middle of the base along the floor or the piece that it stands on. Uplift: one "
     "side of the base "
     "carries less than "
@@ -146,7 +146,7 @@ inline constexpr Phrase k_table_note{
     "section {2}.",
     "転倒：傾斜角が転倒限界角（載っている物を含めた重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らな"
     "いこと。限界角は最も"
-    "傾いた側の値。すべり："
+    "傾いた側の値（傾斜角が{1}°未満の場合は最も近い縁の値）。すべり："
     "床または載っている家具に対する底面中心の移動量。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
     "±は推定数値誤差（第{2}節）。"};

@@ -145,6 +145,14 @@ bool ModelSwitch::would_lie(const Switching& on, ModelLevel level, int b) {
   return body.lands_on_what_gives(on.parameters.contact.alpha);
 }
 
+// Whether a frame, as an elastic body, would soon be on what makes it a frame again.
+bool ModelSwitch::would_bend(const Switching& on, ModelLevel level, int b) {
+  constexpr double k_soon = 0.5;  // of the accuracy
+  if (!traits(level).has_modes || on.parameters.models[b] != BodyModel::automatic) return false;
+  const double bound = on.parts.reduced(on.state, b).rotation_bound(reduce(on.model, on.state, b, level));
+  return elastic_error(on.model.bodies[b], on.parameters, bound) > k_soon * on.parameters.accuracy;
+}
+
 // At the state of `on`, where the contacts of those that are not frames have been found.
 LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   const auto& [model, parameters, now, end, state, parts] = on;
@@ -159,7 +167,7 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
     const bool calm = !is_bent(model, state, b) && !is_falling(model, parameters, state, b) &&
                       strain_energy(model, b, parts.sections) <
                           k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
-                      yield_ratio(model, b, parts.sections) < k_calm_yield;
+                      yield_ratio(model, b, parts.sections) < k_calm_yield && !would_bend(on, base.level, b);
     if (!calm)
       s.calm_since = -1;
     else if (s.calm_since < 0)

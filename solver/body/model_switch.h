@@ -39,6 +39,7 @@ class ModelSwitch {
   LevelChoice choose(const Switching& on, int body);
   LevelChoice choose_of_block(const Switching& on, int body);
   static bool would_lie(const Switching& on, ModelLevel level, int body);
+  static bool would_bend(const Switching& on, ModelLevel level, int body);
   void begin_block(const Switching& on, int body);
   void find_near(const std::vector<Island>& islands);
   void choose_islands(const std::vector<Island>& islands, const Parameters& parameters, State& state);

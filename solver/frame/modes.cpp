@@ -22,7 +22,7 @@ constexpr int k_blocks = 8;  // Krylov blocks between two restarts
 constexpr int k_guard = 4;   // vectors beyond those asked for
 constexpr int k_most_restarts = 40;
 constexpr double k_converged = 1e-9;   // relative change of w^2 + shift between restarts
-constexpr double k_no_strain = 1e-13;  // of the highest w^2: rounding
+constexpr double k_no_strain = 1e-12;  // of the sum of sizes of its terms: strain that rounding may be
 
 // K and M of one body in six numbers per node; fixed directions stay zero.
 class Pencil {
@@ -68,6 +68,17 @@ class Pencil {
       out.middleRows<6>(6 * j) += f.bottomRows<6>();
     });
     return clear_fixed(std::move(out));
+  }
+
+  // v K v as the sum of the sizes of its terms.
+  double terms_of_strain(const VectorXd& v) const {
+    double sum = 0;
+    each_element([&](int i, int j, const Mat12& k) {
+      Eigen::Matrix<double, 12, 1> u;
+      u << v.segment<6>(6 * i), v.segment<6>(6 * j);
+      sum += u.cwiseAbs().dot(k.cwiseAbs() * u.cwiseAbs());
+    });
+    return sum;
   }
 
   // About the highest w^2: the greatest of a single direction.
@@ -251,9 +262,10 @@ std::vector<Mode> natural_modes(const Model& model, int body, int count) {
     modes.push_back(mode(p, 0, rigid.col(c), true));
   if (count <= rigid.cols()) return modes;
   const Pairs pairs = elastic_pairs(p, rigid, count - static_cast<int>(rigid.cols()));
-  const double no_strain = k_no_strain * p.highest();
-  for (int c = 0; c < pairs.value.size(); ++c)
-    modes.push_back(mode(p, pairs.value[c], pairs.vector.col(c), pairs.value[c] < no_strain));
+  for (int c = 0; c < pairs.value.size(); ++c) {
+    const VectorXd shape = pairs.vector.col(c);
+    modes.push_back(mode(p, pairs.value[c], shape, pairs.value[c] < k_no_strain * p.terms_of_strain(shape)));
+  }
   return modes;
 }
 

@@ -8,6 +8,7 @@
 #include "solver/frame/find_rest.h"
 #include "solver/frame/hinges.h"
 #include "solver/frame/start_vector.h"
+#include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 
 namespace topple {
@@ -192,6 +193,28 @@ class FrameRest {
   StepStatus status_;
 };
 
+// Frames that start deep within a plane, onto it: there it pushes with more than they ever bear.
+void lift_out(const BodySystem& s, State& state) {
+  const Model& model = s.model;
+  for (int i = 0; i < s.count; ++i) {
+    const int index = model.node_body[s.node[i]];
+    const Body& body = model.bodies[index];
+    if (s.node[i] != body.first_node || state.bodies[index].level != ModelLevel::frame) continue;
+    const bool held = ranges::any_of(
+        model.supports, [&](const Support& support) { return model.node_body[support.node] == index; });
+    for (const Plane& plane : model.planes) {
+      double deepest = 0;
+      for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+        const ContactPoint& point = model.contact_points[p];
+        deepest =
+            std::max(deepest, point.width / 2 - plane.normal.dot(state.position[point.node] - plane.point));
+      }
+      for (int n = body.first_node; !held && n < body.first_node + body.node_count; ++n)
+        state.position[n] += deepest * plane.normal;
+    }
+  }
+}
+
 }  // namespace
 
 StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& state, IntegratorScratch& w) {
@@ -201,6 +224,7 @@ StepStatus settle_system(BodySystem& s, const Parameters& parameters, State& sta
   if (found == Balance::rest) return body.accept();
   if (found == Balance::tips_over) return body.status(found);
   state.stick = stick;
+  lift_out(s, state);
   FrameRest again(s, parameters, state, w);
   const Balance then = find_rest(again, k_long);
   return then == Balance::rest ? again.accept() : again.status(then == Balance::none ? found : then);

@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-9";
+  return "topple-10";
 }
 
 }  // namespace topple

@@ -9,6 +9,7 @@
 #include "solver/frame/find_rest.h"
 #include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
+#include "solver/reduced/elastic_basis.h"
 
 namespace topple {
 namespace {
@@ -119,6 +120,7 @@ class RestOfBodies {
       more_friction_ = false;
       still_ = with_own_friction_;
       now_ = StepInputs(still_, 0);
+      for (std::size_t b = 0; b < bodies_.size(); ++b) hold_splay(b);
       if (!(unbalance() < balanced)) return Balance::not_final;
     }
     matrix_.set_zero();
@@ -262,6 +264,47 @@ class RestOfBodies {
       stiffness.block<3, 3>(3, 3) -=
           skew(contacts.force(touch, which)) * skew(arm);  // the arm turns with the body
     });
+  }
+
+  // The weight spreads the feet of an elastic body, and friction holds them together. Modes show little of
+  // it: what they leave out goes into the stick springs, so that these hold what they would of a frame.
+  void hold_splay(std::size_t which) {
+    struct Foot {
+      std::size_t spring;   // index into State::stick
+      double normal;        // N
+      double own, contact;  // m/N, across: of the body there, and of the contact alone
+    };
+    const ReducedBody& body = *bodies_[which].body;
+    if (modes(which) == 0) return;
+    std::vector<Foot> feet;
+    std::vector<int> nodes;
+    body.contacts_.each([&](const BodyContacts::Touch& touch, int lane, int point, std::size_t spring) {
+      if (!touch.level) return;
+      const double own = touch.give_across[lane];
+      feet.push_back({spring, touch.normal[lane], own, 1 / touch.stick_stiffness[lane] - own});
+      nodes.push_back(body.model_.contact_points[point].node - body.model_.bodies[body.body_].first_node);
+    });
+    if (feet.empty()) return;
+    const auto n = static_cast<Eigen::Index>(feet.size());
+    const Eigen::MatrixXd all = flexibility(*body.basis_, nodes);
+    Eigen::MatrixXd across(2 * n, 2 * n);
+    Eigen::VectorXd spread = Eigen::VectorXd::Zero(2 * n);
+    for (Eigen::Index i = 0; i < n; ++i)
+      for (Eigen::Index j = 0; j < n; ++j) {
+        across.block<2, 2>(2 * i, 2 * j) = all.block<2, 2>(3 * i, 3 * j);
+        spread.segment<2>(2 * i) += feet[j].normal * all.block<2, 1>(3 * i, 3 * j + 2);
+      }
+    for (Eigen::Index i = 0; i < n; ++i) across.diagonal().segment<2>(2 * i).array() += feet[i].contact;
+    const Eigen::VectorXd held = across.completeOrthogonalDecomposition().solve(-spread);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      Vec3 left = Vec3::Zero();
+      for (Eigen::Index j = 0; j < n; ++j)
+        left += body.basis_->residual_shape.block<3, 3>(6 * nodes[i], 3 * nodes[j]) *
+                Vec3(held[2 * j], held[2 * j + 1], feet[j].normal);
+      left -= feet[i].own * Vec3(held[2 * i], held[2 * i + 1], 0);
+      const Vec3 there = at(which).rotation * left;
+      state_.stick[feet[i].spring] += Vec3(there.x(), there.y(), 0);
+    }
   }
 
   // Times `factor`, 1/s^2.

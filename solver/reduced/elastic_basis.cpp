@@ -264,9 +264,24 @@ std::shared_ptr<const ElasticBasis> with_attachments(const Model& model, int ind
 double first_frequency(const Model& model, int body) {
   if (const ElasticBasis* basis = model.bodies[body].elastic.get()) return basis->frequency[0];
   constexpr int k_rigid = 6;
-  const std::vector<Mode> modes = natural_modes(model, body, k_rigid + 1);
-  const auto first = std::find_if(modes.begin(), modes.end(), [](const Mode& mode) { return !mode.rigid; });
-  return first == modes.end() ? 0 : 2 * k_pi * first->frequency;
+  constexpr double k_slow = 0.02;  // of g/reach
+  const double slowest = std::sqrt(k_slow * k_standard_gravity / model.bodies[body].reach);
+  for (const Mode& mode : natural_modes(model, body, k_rigid + 1))
+    if (const double frequency = 2 * k_pi * mode.frequency; !mode.rigid && frequency > slowest)
+      return frequency;
+  return 0;
+}
+
+MatrixXd flexibility(const ElasticBasis& basis, const std::vector<int>& nodes) {
+  const auto n = static_cast<Eigen::Index>(nodes.size());
+  MatrixXd shape(3 * n, basis.modes), out(3 * n, 3 * n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    shape.middleRows<3>(3 * i) = basis.shape.middleRows<3>(6 * nodes[i]);
+    for (Eigen::Index j = 0; j < n; ++j)
+      out.block<3, 3>(3 * i, 3 * j) = basis.residual_shape.block<3, 3>(6 * nodes[i], 3 * nodes[j]);
+  }
+  const Eigen::ArrayXd soft = basis.frequency.head(basis.modes).square().inverse();
+  return out + shape * soft.matrix().asDiagonal() * shape.transpose();
 }
 
 Vec3 anchor_shape(const Model& model, const AnchorEnd& end, int mode) {

@@ -31,10 +31,15 @@ std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int body);
 /// 1977). Pins have no line, and take none. The body's own: there is nothing to add.
 std::shared_ptr<const ElasticBasis> with_attachments(const Model& model, int body);
 
+/// Of nodes of the free body, counted from its first, three rows and columns each, m/N: how far forces at
+/// rest deflect them.
+Eigen::MatrixXd flexibility(const ElasticBasis& basis, const std::vector<int>& nodes);
+
 /// Displacement of an anchor's end in a mode of its body, reference axes, 1/sqrt(kg).
 Vec3 anchor_shape(const Model& model, const AnchorEnd& end, int mode);
 
-/// Angular frequency of the first elastic mode of a body with its supports, rad/s; 0 when it has none.
+/// Angular frequency w of the first elastic mode of a body with its supports, rad/s, that is not so slow that
+/// weight moves it rather than its springs (w^2 < g/reach/50); 0 when it has none.
 double first_frequency(const Model& model, int body);
 
 }  // namespace topple

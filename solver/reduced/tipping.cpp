@@ -53,19 +53,6 @@ std::vector<int> nodes_on(const Model& model, const Body& body, const TippingEdg
   return nodes;
 }
 
-// Of nodes of a free body, three rows and columns each, m/N: how far forces at rest deflect them.
-Eigen::MatrixXd flexibility(const ElasticBasis& basis, const std::vector<int>& nodes) {
-  const auto n = static_cast<Eigen::Index>(nodes.size());
-  Eigen::MatrixXd shape(3 * n, basis.modes), out(3 * n, 3 * n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    shape.middleRows<3>(3 * i) = basis.shape.middleRows<3>(6 * nodes[i]);
-    for (Eigen::Index j = 0; j < n; ++j)
-      out.block<3, 3>(3 * i, 3 * j) = basis.residual_shape.block<3, 3>(6 * nodes[i], 3 * nodes[j]);
-  }
-  const Eigen::ArrayXd soft = basis.frequency.head(basis.modes).square().inverse();
-  return out + shape * soft.matrix().asDiagonal() * shape.transpose();
-}
-
 }  // namespace
 
 double least_tipping_angle(const Body& body) {

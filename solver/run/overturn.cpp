@@ -176,6 +176,7 @@ Outcome::Outcome(const Model& model, const std::vector<BodyStart>& starts)
     side_force_.emplace_back(sides, 0.);
     inner_force_.emplace_back(sides, 0.);
     total_force_.push_back(0);
+    depth_.emplace_back();
     side_of_.emplace_back(body.contact_point_count);
     inner_of_.emplace_back(body.contact_point_count);
     for (int side = 0; side < static_cast<int>(sides); ++side) list_points(model, body, side);
@@ -197,6 +198,7 @@ void Outcome::list_points(const Model& model, const Body& body, int side) {
   };
   double farthest = 0;
   for (const Vec3& corner : corners) farthest = std::max(farthest, before(corner));
+  depth_.back().push_back(farthest / edge.norm());
   for (const int point : body.base_points) {
     const Vec3& x = model.node_position[model.contact_points[point].node];
     const int own = point - body.first_contact_point;
@@ -219,9 +221,11 @@ void Outcome::carry(const Model& model, int part, double t, double u, const Vec3
   total_force_[b] += force.z();
   const std::size_t sides = body.support_polygon.size();
   for (std::size_t i = 0; i < sides; ++i) {
+    // on the half next to it: what bears may be narrower than the base
     const Vec3 edge = body.support_polygon[(i + 1) % sides] - body.support_polygon[i];
     const Vec3 to = x - body.support_polygon[i];
-    if (std::abs(edge.x() * to.y() - edge.y() * to.x()) < slack * edge.norm()) side_force_[b][i] += force.z();
+    const double from_edge = (edge.x() * to.y() - edge.y() * to.x()) / edge.norm();
+    if (from_edge < depth_[b][i] / 2 - slack) side_force_[b][i] += force.z();
   }
 }
 

@@ -195,6 +195,7 @@ class Outcome {
   std::vector<Eigen::Vector4d> unit_stress_;              ///< per section: Pa by N, Mx, My and Mz of one
   /// Per body, per side: N, on it and between it and the opposite side.
   std::vector<std::vector<double>> side_force_, inner_force_;
+  std::vector<std::vector<double>> depth_;  ///< per body, per side: m, from it to what is farthest from it
   std::vector<char> reaches_base_;   ///< per element, then per panel: a node of it is of its body's base
   std::vector<double> total_force_;  ///< per body, N
   /// Per body: contact point (from 0) to the sides that it lies on, and to those before which it lies.

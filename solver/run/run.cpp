@@ -61,6 +61,7 @@ void Run::start() {
 Run::Run(const Setup& setup, State state, Parameters parameters)
     : Run(setup, point_at(setup, std::move(state), std::move(parameters))) {
   if (!status_.ok()) return;
+  now_.counted_from = now_.state.time;
   observe();
   events_.clear();
 }

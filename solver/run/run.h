@@ -80,6 +80,7 @@ struct RunPoint {
   bool stopped_early = false;
   std::vector<LoadStep> load_steps = {};  ///< statics
   std::vector<PlaceOutcome> places = {};  ///< one per place of the room
+  double counted_from = 0;                ///< s, since when the outcome is known
 };
 
 /// A state of a run, and what acts there.
@@ -131,6 +132,7 @@ class Run {
   const std::vector<PlaceOutcome>& places() const { return now_.places; }
   const std::vector<Event>& events() const { return events_; }
   const std::vector<LoadStep>& load_steps() const { return now_.load_steps; }
+  double counted_from() const { return now_.counted_from; }
   const std::vector<ContactForce>& contacts() const { return now_acting_.contacts; }
   const std::vector<MemberForce>& member_contacts() const { return now_acting_.between_members; }
   const std::vector<SectionForces>& sections() const { return now_acting_.sections; }

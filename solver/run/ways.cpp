@@ -18,11 +18,21 @@ bool is_behind_a_wall(const Room& room, const Footprint& print) {
   });
 }
 
+/// Diameter of the widest disc around a point, m.
+double space_at(const std::vector<Convex>& walls, const RoomPlan& plan, const Vec2& at) {
+  double radius = std::numeric_limits<double>::infinity();
+  for (const Convex& wall : walls) radius = std::min(radius, distance(wall, at));
+  for (const Footprint& print : plan.lying) radius = std::min(radius, print.distance(at));
+  return 2 * radius;
+}
+
+/// A person who is squeezed where they are gets away from there.
 Way way_to(const Room& room, const std::vector<Convex>& walls, const RoomPlan& plan, const Vec2& from,
            int door) {
   const WidestWay widest =
       widest_way(room, walls, plan.lying, from, room.doors[static_cast<std::size_t>(door)]);
-  Way way{door, widest.width >= room.person - k_touch, widest.width, {}};
+  const double space = std::max(space_at(walls, plan, from), room.person);
+  Way way{door, widest.width >= room.person - k_touch, std::min(widest.width, space), {}};
   if (!way.open)
     for (const int k : widest.bottleneck) way.blocked_by.push_back(plan.body[static_cast<std::size_t>(k)]);
   return way;

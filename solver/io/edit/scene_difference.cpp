@@ -54,6 +54,7 @@ Value value_of(const Node& node, const Key* key) {
 std::optional<Value> fallback(const Scene& scene, const Key* key) {
   if (!key || key->fallback.empty()) return std::nullopt;
   const double first = key->fallback.front();
+  if (is_step_chosen(scene, *key)) return Value{"\"auto\"", "auto"};
   switch (key->type) {
     case KeyType::number:
     case KeyType::integer:
@@ -100,11 +101,12 @@ class Comparison {
   }
 
   // Where both leave it out, it may still differ: it follows from the furniture.
-  void chosen_alpha() {
-    const Key& key = *find_key("contact", "alpha");
-    const double left = a_.setup.parameters.contact.alpha, right = b_.setup.parameters.contact.alpha;
-    if (left == right || ranges::find(found, "contact.alpha", &SceneDifference::key) != found.end()) return;
-    found.push_back({"contact.alpha", value_text(key, left), value_text(key, right)});
+  void chosen(const char* name, double ContactLaw::*number) {
+    const Key& key = *find_key("contact", name);
+    const std::string path = std::string("contact.") + name;
+    const double left = a_.setup.parameters.contact.*number, right = b_.setup.parameters.contact.*number;
+    if (left == right || ranges::find(found, path, &SceneDifference::key) != found.end()) return;
+    found.push_back({path, value_text(key, left), value_text(key, right)});
   }
 
  private:
@@ -169,7 +171,9 @@ std::vector<SceneDifference> differences(const Scene& a, const Scene& b) {
   const Node left = as_titled(a), right = as_titled(b);
   Comparison comparison(a, b);
   comparison.tables(&left, &right, "", "");
-  comparison.chosen_alpha();
+  comparison.chosen("alpha", &ContactLaw::alpha);
+  if (a.setup.model.bodies.size() > 1 || b.setup.model.bodies.size() > 1)
+    comparison.chosen("member_share", &ContactLaw::member_share);
   return std::move(comparison.found);
 }
 

@@ -57,12 +57,17 @@ class Search {
 
 }  // namespace
 
+bool is_step_chosen(const Scene& scene, const Key& key) {
+  return &key == find_key("run", "time_step") && scene.setup.parameters.adaptive;
+}
+
 std::optional<double> value_left_out(const Scene& scene, const Key& key) {
   static const std::pair<const Key*, double ContactLaw::*> k_chosen[] = {
       {find_key("contact", "alpha"), &ContactLaw::alpha},
       {find_key("contact", "member_share"), &ContactLaw::member_share}};
   for (const auto& [chosen, number] : k_chosen)
     if (&key == chosen) return scene.setup.parameters.contact.*number;
+  if (is_step_chosen(scene, key)) return std::nullopt;
   return key.fallback.size() == 1 ? std::optional(key.fallback.front()) : std::nullopt;
 }
 

@@ -16,8 +16,11 @@ struct SceneNumber {
   std::optional<double> value;  ///< SI, of the scene or value_left_out
 };
 
+/// `key` is run.time_step, and the step follows the contact (time_step = "auto").
+bool is_step_chosen(const Scene& scene, const Key& key);
+
 /// SI, what the scene takes for a key of one number that it leaves out: its default, or what follows from its
-/// bodies (contact.alpha, contact.member_share). None: it has none.
+/// bodies (contact.alpha, contact.member_share). None: it has none, or is_step_chosen.
 std::optional<double> value_left_out(const Scene& scene, const Key& key);
 
 /// `path`: as of --set. Throws InputError when the scene has no such place, or no number can stand there.

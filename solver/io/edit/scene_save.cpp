@@ -69,6 +69,10 @@ class Rewriting {
   void take(const Parameters& read) {
     const Node root = parse_toml(saved_.text, "scene");
     for (const auto& [key, index] : different(read)) change({key, index, edited_value(now_, key, index)});
+    // chosen together with an alpha that the scene left out, and states now
+    if (const double share = now_.contact.member_share;
+        model_.bodies.size() > 1 && read.contact.member_share != share)
+      add({"contact", "member_share"}, shortest_digits(share));
     for (std::size_t i = 0; i < now_.shakes.size(); ++i) drop_foreign(root, i);
     drop_foreign(root, read);
     if (!frames_only() && read.integrator != now_.integrator && saved_.given_up.empty())

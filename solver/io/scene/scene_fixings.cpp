@@ -146,8 +146,8 @@ class Fixing {
     const bool goes = (found->wall && kind_.to_wall) || (found->floor && kind_.to_floor) ||
                       (found->ceiling && kind_.to_ceiling) || (found->body >= 0 && kind_.to_body);
     if (!goes)
-      entry_.fail("to", "a " + std::string(kind_.word) + " " + kind_.about + "; \"" + name +
-                            "\" is none of " + targets());
+      entry_.fail("to", "a " + std::string(kind_.word) + " " + kind_.about + "; it leads to " + targets() +
+                            ", not to \"" + name + "\"");
     found->name = name;
     return *found;
   }

@@ -65,7 +65,8 @@ void add_fitting_keys(std::vector<Key>& keys) {
       .word("kind", words_of(k_fixings),
             "L-bracket: both ways across a gap; strap: pulls only; pole: from the top to the ceiling, pushes "
             "only; "
-            "mat: sticks the corners of the base to the floor; stopper: wedges under the front edge; "
+            "mat: sticks the corners of the base to the floor; stopper: wedges under the side away from the "
+            "wall; "
             "connector: bolts "
             "two bodies together")
       .required();

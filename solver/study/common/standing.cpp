@@ -57,6 +57,8 @@ Support balanced(const Standing& body, const ContactLaw& law, double theta) {
   return support_at(body, law, balanced_sunk(body, law, theta), theta);
 }
 
+constexpr double k_stiffest = 1e12;  // alpha over the weight
+
 /// Depth of one contact on a base that is sunk by rest[0] and leans by rest[1] and rest[2].
 double depth_of(const Standing::Contact& contact, const Vec3& rest) {
   return (contact.sunk + rest.dot(Vec3(1, contact.place, contact.across))) / contact.L;
@@ -266,6 +268,12 @@ double tipping_limit(const Standing& body, const ContactLaw& law) {
   return std::max({best, withstood((from + to) / 2), 0.});
 }
 
+double stiff_limit(const Standing& body, ContactLaw law) {
+  constexpr double k_hardly = 1e-8;  // of L: the contacts give way, more than rounding
+  law.alpha = body.weight() * std::pow(1 / k_hardly, law.q);
+  return std::min(tipping_limit(body, law), body.rigid_limit());
+}
+
 std::optional<double> soft_limit(const Standing& body, const ContactLaw& law) {
   constexpr double k_nearly = 0.95;
   const double limit = tipping_limit(body, law);
@@ -273,16 +281,17 @@ std::optional<double> soft_limit(const Standing& body, const ContactLaw& law) {
 }
 
 double alpha_for_tipping(const Standing& body, ContactLaw law, double loss) {
+  const double enough = (1 - loss) * stiff_limit(body, law);
   return std::exp(
-      turning_point(std::log(1e-3 * body.weight()), std::log(1e12 * body.weight()), [&](double alpha) {
+      turning_point(std::log(1e-3 * body.weight()), std::log(k_stiffest * body.weight()), [&](double alpha) {
         law.alpha = alpha;
-        return tipping_limit(body, law) >= (1 - loss) * body.rigid_limit();
+        return tipping_limit(body, law) >= enough;
       }));
 }
 
 double alpha_for_period(const Standing& body, ContactLaw law, double period) {
   return std::exp(
-      turning_point(std::log(1e-3 * body.weight()), std::log(1e12 * body.weight()), [&](double alpha) {
+      turning_point(std::log(1e-3 * body.weight()), std::log(k_stiffest * body.weight()), [&](double alpha) {
         law.alpha = alpha;
         return bounce_frequency(body, law) * period >= 1;
       }));

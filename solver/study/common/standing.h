@@ -64,10 +64,14 @@ double bounce_frequency(const Standing& body, const ContactLaw& law);
 /// 0: it cannot stand.
 double tipping_limit(const Standing& body, const ContactLaw& law);
 
+/// The same on contacts that hardly give way: b/h, but for a base that begins askew, as on a stopper.
+double stiff_limit(const Standing& body, ContactLaw law);
+
 /// tipping_limit() as an acceleration, m/s^2, where it is less than 95 % of that on rigid contact; else none.
 std::optional<double> soft_limit(const Standing& body, const ContactLaw& law);
 
-/// Smallest alpha, N, from which on the tipping limit is within the fraction `loss` of b/h. Stiff contact:
+/// Smallest alpha, N, from which on the tipping limit is within the fraction `loss` of stiff_limit(). Stiff
+/// contact:
 ///   (W/n_e) (L h/(s b loss))^q            q = 1; slightly less for q > 1
 double alpha_for_tipping(const Standing& body, ContactLaw law, double loss);
 

@@ -57,9 +57,8 @@ Information information(const std::vector<Level>& levels, const Pair& c) {
 
 std::string why_none(const std::vector<Level>& levels, const std::string& verb) {
   constexpr double k_far = std::numeric_limits<double>::infinity();
-  double least_hit = k_far, most_hit = 0, least_miss = k_far, most_miss = 0, first = k_far, last = 0;
+  double least_hit = k_far, most_hit = 0, least_miss = k_far, most_miss = 0;
   for (const auto& [a, n, k] : levels) {
-    if (n > 0) first = std::min(first, a), last = std::max(last, a);
     if (k > 0) least_hit = std::min(least_hit, a), most_hit = std::max(most_hit, a);
     if (k < n) least_miss = std::min(least_miss, a), most_miss = std::max(most_miss, a);
   }
@@ -72,13 +71,18 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
   if (levels.size() == 1) return fmt::format("there are runs at {:.6g} alone", least_hit);
   if (most_miss == least_hit) {
     const Level& level = *std::ranges::find(levels, least_hit, &Level::intensity);
-    const bool beyond = least_hit == last && 2 * level.hits < level.runs,
-               below = least_hit == first && 2 * level.hits > level.runs;
-    return fmt::format("runs differ at {:.6g} alone ({} of {}): the median lies {} it", least_hit, level.hits,
-                       level.runs,
-                       beyond  ? "beyond"
-                       : below ? "below"
-                               : "near");
+    const int above = level.runs - 2 * level.hits;  // where the median is: > 0 above this level
+    double before = 0, after = k_far;
+    for (const Level& other : levels) {
+      if (other.runs == 0) continue;
+      if (other.intensity < least_hit) before = std::max(before, other.intensity);
+      if (other.intensity > least_hit) after = std::min(after, other.intensity);
+    }
+    return fmt::format(
+        "runs differ at {:.6g} alone ({} of {}): the median lies {}", least_hit, level.hits, level.runs,
+        above == 0  ? "near it"
+        : above > 0 ? (after < k_far ? fmt::format("between it and {:.6g}", after) : "beyond it")
+                    : (before > 0 ? fmt::format("between {:.6g} and it", before) : "below it"));
   }
   if (most_hit <= least_miss) return "it does not become more frequent";
   return "";

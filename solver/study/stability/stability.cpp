@@ -8,7 +8,9 @@
 #include <numeric>
 
 #include "solver/body/model_level.h"
+#include "solver/io/edit/scene_rewrite.h"
 #include "solver/io/scene/scene_file.h"
+#include "solver/math/ranges.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/measure.h"
 #include "solver/study/common/refinement.h"
@@ -63,7 +65,13 @@ std::vector<SteppingMethod> methods_for(const Setup& scene) {
 }
 
 Setup with_changes(const StabilityPlan& plan, const std::vector<std::string>& changes) {
-  Setup setup = io::parse_scene(plan.scene.text, plan.scene.name, changes, io::kept_files(plan.scene)).setup;
+  // the tolerance of a scene is that of steps which it chooses
+  const bool step_given =
+      ranges::any_of(changes, [](const std::string& change) { return change.starts_with("run.time_step="); });
+  const std::string text = step_given
+                               ? io::rewrite_toml(plan.scene.text, {{{"run", "tolerance"}, std::nullopt}})
+                               : plan.scene.text;
+  Setup setup = io::parse_scene(text, plan.scene.name, changes, io::kept_files(plan.scene)).setup;
   setup.run.duration = plan.horizon;
   return setup;
 }

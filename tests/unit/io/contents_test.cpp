@@ -187,5 +187,33 @@ TEST(Contents, nobody_passes_a_panel_of_one_millimetre_at_20_metres_a_second) {
       }
 }
 
+// A box that is wider than what it stands on is borne within its base, by the half next to each side.
+TEST(Contents, a_box_that_overhangs_its_shelf_lifts_when_it_tips) {
+  const Scene scene = parse_scene(
+      "topple = 1\n[run]\nduration = 2.2\nwant = [\"motion\"]\n[floor]\n[[shake]]\ntype = \"sine\"\n"
+      "frequency = 2\namplitude = 15\nstart = 1.5\ndirection = [0.1, 1, 0]\n[[furniture]]\n"
+      "kind = \"bookshelf\"\nat = [0, 0]\nyaw = \"90 deg\"\n[[block]]\nname = \"box\"\n"
+      "size = [0.25, 0.3, 0.2]\nmass = 8\nat = [0, 0, 1.8]\n",
+      "overhang.toml");
+  topple::Run run(scene.setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  const BodyOutcome& box = run.outcome().bodies()[1];
+  ASSERT_TRUE(box.first_uplift);
+  EXPECT_GT(*box.first_uplift, *run.outcome().bodies()[0].first_uplift);
+}
+
+// Deformations that make an elastic body a frame come back with every half period: it stays one meanwhile.
+TEST(Contents, a_cabinet_that_sways_does_not_change_its_model_with_every_half_period) {
+  const Scene scene = parse_scene(
+      "topple = 1\n[run]\nduration = 1.5\naccuracy = 1e-4\n[floor]\n[[shake]]\ntype = \"sine\"\n"
+      "frequency = 2\namplitude = 1.2\ncycles = 6\ntaper = 1\n[[cabinet]]\nname = \"c\"\n"
+      "size = [0.4, 1.2, 1.8]\nmass = 200\nsection = \"box 30x1\"\nmaterial = \"steel\"\nshelves = 4\n"
+      "bracing = \"none\"\n",
+      "sways.toml");
+  topple::Run run(scene.setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  EXPECT_EQ(run.outcome().bodies()[0].level_changes.size(), 2u);  // elastic, frame
+}
+
 }  // namespace
 }  // namespace topple::io

@@ -72,5 +72,29 @@ TEST(FeetErrors, need_a_friction_of_the_scene_of_which_theirs_is_a_share) {
   }
 }
 
+// Nodes of a frame may be given on the floor, half a width within it.
+TEST(Feet, a_rack_with_its_nodes_on_the_floor_comes_to_rest_on_it) {
+  using std::to_string;
+  std::string nodes, members, masses;
+  const double heavy[] = {0, 2.5, 5, 15, 27.5};
+  for (int level = 0; level < 5; ++level)
+    for (int corner = 0; corner < 4; ++corner) {
+      const int node = 4 * level + corner, next = 4 * level + (corner + 1) % 4;
+      nodes += std::string("[") + (corner % 3 == 0 ? "-0.205" : "0.205") + ", " +
+               (corner < 2 ? "-0.58" : "0.58") + ", " + to_string(0.44 * level) + "], ";
+      if (level == 0) continue;
+      for (const int from : {node - 4, next})
+        members += "{ nodes = [" + to_string(from) + ", " + to_string(node) +
+                   "], section = \"box 40x1.5\", material = \"steel\" }, ";
+      masses += "{ node = " + to_string(node) + ", mass = " + to_string(heavy[level]) + " }, ";
+    }
+  const Scene scene = parse_scene("topple = 1\nfloor = {}\n[[frame]]\nname = \"rack\"\nnodes = [" + nodes +
+                                      "]\nmembers = [" + members + "]\nmasses = [" + masses + "]\n",
+                                  "rack.toml");
+  const topple::Run run(scene.setup);
+  ASSERT_TRUE(run.status().ok()) << run.status().message(scene.setup.model);
+  EXPECT_NEAR(run.state().position[0].z(), 0.02, 1e-4);
+}
+
 }  // namespace
 }  // namespace topple::io

@@ -341,9 +341,8 @@ TEST(Fixing, what_cannot_be_is_told_in_a_line_with_its_place) {
       "s.toml:31:6: fixing.it.to: there is no wall, body, floor or ceiling \"front\"; known: floor, ceiling, "
       "back, left, right");
   EXPECT_EQ(refusal(fixing("pole", "back")),
-            "s.toml:31:6: fixing.it.to: a pole pushes only, between the top and the ceiling; \"back\" is "
-            "none of the "
-            "ceiling");
+            "s.toml:31:6: fixing.it.to: a pole pushes only, between the top and the ceiling; it leads to the "
+            "ceiling, not to \"back\"");
   const std::string low = blocks(fixing("pole", "ceiling"));
   const auto refused = [&](const std::string& set) {
     try {

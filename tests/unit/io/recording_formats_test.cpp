@@ -148,7 +148,7 @@ INSTANTIATE_TEST_SUITE_P(
         Kept{"format-9", 9, "topple-3", true}, Kept{"format-10", 10, "topple-4", true},
         Kept{"format-10-topple-5", 10, "topple-5", true}, Kept{"format-10-topple-6", 10, "topple-6", true},
         Kept{"format-10-topple-7", 10, "topple-7", true}, Kept{"format-10-topple-8", 10, "topple-8", true},
-        Kept{"format-10-topple-9", 10, "topple-9", true}),
+        Kept{"format-10-topple-9", 10, "topple-9", true}, Kept{"format-10-topple-10", 10, "topple-10", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');

@@ -62,6 +62,19 @@ TEST(SceneDifference, what_is_chosen_for_each_scene_differs_where_both_leave_it_
   EXPECT_TRUE(differences(light, light).empty());
 }
 
+TEST(SceneDifference, a_step_that_follows_the_contact_is_automatic_whether_the_scene_says_so_or_not) {
+  const Scene chosen = load_scene("refrigerator"), said = load_scene("refrigerator", {"run.time_step=auto"});
+  ASSERT_TRUE(chosen.setup.parameters.adaptive);
+  EXPECT_TRUE(differences(chosen, said).empty());
+  EXPECT_FALSE(number_in(chosen, "run.time_step").value);
+}
+
+// It is chosen with alpha, where the scene leaves that out.
+TEST(SceneDifference, a_share_of_alpha_between_members_may_differ_where_both_leave_it_out) {
+  const auto found = differences(load_scene("moving-in"), load_scene("moving-in", {"contact.alpha=9 MN"}));
+  EXPECT_NE(std::ranges::find(found, "contact.member_share", &SceneDifference::key), found.end());
+}
+
 TEST(SceneDifference, an_entry_that_one_has_alone_is_one_line) {
   const Scene a = load_scene("paper-a");
   const Scene b = load_scene("paper-b");

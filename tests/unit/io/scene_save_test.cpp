@@ -252,6 +252,16 @@ TEST(SavedScene, a_sweep_that_does_not_change_is_saved_next_to_what_it_is_and_sa
   EXPECT_DOUBLE_EQ(loaded.last_frequency, 2);
 }
 
+TEST(SavedScene, the_share_of_alpha_between_members_that_was_chosen_stays_when_alpha_is_stated) {
+  const Scene scene = load_scene("moving-in");
+  Parameters now = scene.setup.parameters;
+  ASSERT_LT(now.contact.member_share, 1);
+  apply({Edit::Key::alpha, 0, Vec3(2 * now.contact.alpha, 0, 0)}, scene.setup.model, 0.4, now);
+  const SavedScene saved = edited_scene(scene, now);
+  const Scene again = parse_scene(saved.text, "again.toml", {}, files_of(scene));
+  EXPECT_EQ(again.setup.parameters.contact.member_share, now.contact.member_share);
+}
+
 TEST(SavedScene, what_an_absent_key_means_is_written_where_another_edit_would_change_it) {
   std::string text = k_to_be_saved;
   text.erase(text.find("alpha = \"500 kgf\""), std::string("alpha = \"500 kgf\"").size());

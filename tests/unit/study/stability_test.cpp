@@ -177,6 +177,13 @@ TEST(Stability, limits_are_those_of_formulas_worked_out_by_hand) {
   EXPECT_EQ(step_of_chatter({.kind = ContactLawKind::paper, .friction = 0}, g), 0);
 }
 
+TEST(Stability, a_scene_that_names_a_tolerance_is_stepped_as_asked) {
+  const StabilityPlan plan = plan_stability(io::load_scene("classroom"), "run.time_step=1 ms..4 ms:2", "");
+  const topple::Setup setup = stepped_by(plan, plan.methods[1], {"run.time_step=2 ms"});
+  EXPECT_FALSE(setup.parameters.adaptive);
+  EXPECT_EQ(setup.parameters.time_step, 2e-3);
+}
+
 TEST(Stability, central_differences_are_refused_right_of_their_line) {
   StabilityPlan plan = small_plan();
   const std::vector<StabilityLimit> limits = stability_limits(plan);

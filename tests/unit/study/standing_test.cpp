@@ -85,6 +85,20 @@ TEST(Standing, tips_as_the_closed_form_of_stiff_contact_says) {
   EXPECT_EQ(tipping_limit(body, law(5)), 0);  // rocking stiffness below m g h
 }
 
+// A stopper lifts the side that is pushed away from: that the body leans is no matter of alpha.
+TEST(Standing, one_on_a_stopper_is_as_stiff_as_contacts_are) {
+  const double b = 0.19, h = 1.05, lift = 0.01, lost = 0.02;
+  Standing body = block(b, h);
+  for (Standing::Contact& contact : body.contacts)
+    if (contact.place < -0.9 * b) contact.sunk += lift;
+  const double leans = b / h - lift / (2 * b);
+  ContactLaw contact = law(1, 1);
+  EXPECT_NEAR(stiff_limit(body, contact), leans, 1e-5);
+  contact.alpha = alpha_for_tipping(body, contact, lost);
+  EXPECT_NEAR(tipping_limit(body, contact), (1 - lost) * leans, 1e-5);
+  EXPECT_LT(contact.alpha, 1e4 * body.weight());
+}
+
 TEST(Standing, rigid_rocking_has_the_limits_of_slender_blocks) {
   const Standing body = block(1e-3, 1);
   EXPECT_NEAR(body.p(), std::sqrt(0.75 * k_standard_gravity), 1e-5);

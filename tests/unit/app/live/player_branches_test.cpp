@@ -1,6 +1,7 @@
 // Runs that begin anew from their start, from a recording, or from what another recording holds.
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "unit/app/live/player_fixture.h"
 
@@ -155,6 +156,55 @@ TEST_F(PlayerTest, a_recording_is_replayed_and_comes_to_life_in_a_file_of_its_ow
       }());
   run_->close("stopped");
   expect_repeatable("again.h5", 2);
+}
+
+TEST_F(PlayerTest, a_recording_that_goes_on_behind_a_checkpoint_knows_what_came_before) {
+  std::string text = k_rocking;
+  text.replace(text.find("duration = \"1 s\""), 16, "duration = \"1.2 s\"");
+  start(text);
+  player().edit(amplitude(500));
+  run_to_end();
+  run_->close("completed");
+  player_.reset();
+  run_.reset();
+  replay("live.h5", "again.h5");
+  player().scrub(1.15);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().can_edit(); }));
+  run_to_end();
+  run_->close("completed");
+  const auto summary_of = [&](const char* name) {
+    return nlohmann::json::parse(io::Recording(path(name)).summary_json());
+  };
+  const nlohmann::json first = summary_of("live.h5"), again = summary_of("again.h5");
+  ASSERT_LT(first["bodies"][0]["first_uplift_s"], 1);
+  EXPECT_EQ(again["bodies"], first["bodies"]);
+  EXPECT_FALSE(again.contains("counted_from_s"));
+}
+
+TEST_F(PlayerTest, a_branch_of_a_branch_is_read_with_all_that_led_to_it) {
+  std::string text = k_rocking;
+  text.replace(text.find("duration = \"1 s\""), 16, "duration = \"1 s\"\noutput_rate = 1000");
+  start(text);
+  run_to(0.6);
+  for (const double fork : {0.4, 0.5}) {
+    player().scrub(fork);
+    player().continue_from_here();
+    ASSERT_TRUE(until([&] { return player().can_edit(); }));
+    run_to(0.65);
+  }
+  run_->close("stopped");
+  player_.reset();
+  run_.reset();
+  replay("live.h5", "again.h5");
+  ASSERT_TRUE(until([&] { return player().way().back()->time > 0.64; }));
+  const std::vector<RowPtr>& way = player().way();
+  EXPECT_EQ(way.back()->branch, 2);
+  EXPECT_EQ(way.front()->time, 0);
+  for (std::size_t k = 1; k < way.size(); ++k) {
+    EXPECT_GT(way[k]->time, way[k - 1]->time) << k;
+    EXPECT_LT(way[k]->time, way[k - 1]->time + 1.5e-3) << k;
+  }
 }
 
 TEST_F(PlayerTest, a_recording_from_which_no_run_goes_on_is_shown_and_says_so) {

@@ -159,6 +159,28 @@ TEST(ElasticBody, at_rest_has_the_section_forces_of_the_frame) {
   }
 }
 
+// The weight spreads the feet, which friction holds.
+TEST(ElasticBody, rests_with_the_friction_of_the_frame) {
+  std::vector<ContactForce> contacts[2];
+  double greatest = 0;
+  for (int k = 0; k < 2; ++k) {
+    topple::Setup setup = paper_cabinet(k == 0 ? BodyModel::elastic : BodyModel::frame);
+    setup.parameters.contact.alpha = 20000 * k_g;
+    const topple::Run run(setup);
+    ASSERT_TRUE(run.status().ok());
+    contacts[k] = run.contacts();
+  }
+  const auto friction = [](const ContactForce& contact) {
+    return Vec3(contact.force.x(), contact.force.y(), 0);
+  };
+  for (const ContactForce& contact : contacts[1]) greatest = std::max(greatest, friction(contact).norm());
+  EXPECT_GT(greatest, 0.5);
+  ASSERT_EQ(contacts[0].size(), contacts[1].size());
+  // normal forces differ by as much (gives_way_at_its_contacts_as_the_frame_does)
+  for (std::size_t k = 0; k < contacts[0].size(); ++k)
+    EXPECT_LT((friction(contacts[0][k]) - friction(contacts[1][k])).norm(), 0.1 * greatest) << k;
+}
+
 TEST(ElasticBody, stays_at_rest) {
   const topple::Setup setup = paper_cabinet(BodyModel::elastic);
   Simulation sim = simulate(setup);

@@ -101,6 +101,30 @@ TEST(Modes, large_and_small_bodies_are_solved_to_the_same_frequencies) {
     EXPECT_NEAR(few[k].frequency, all[k].frequency, 1e-6 * all[k].frequency) << k;
 }
 
+// The highest frequencies are those of nodes that weigh almost nothing: no measure of the lowest.
+TEST(Modes, a_mass_on_a_light_cantilever_sways) {
+  Model model;
+  Material material = steel();
+  material.density = 1e-3;
+  model.materials.push_back(material);
+  const double side = 0.02, i = side * side * side * side / 12, mass = 50;
+  model.sections.push_back(
+      plain_section(side * side, i, i, 0.1406 * side * side * side * side, 5. / 6, 5. / 6));
+  FrameSpec spec;
+  spec.name = "mast";
+  spec.nodes = {{0, 0, 0}, {0, 0, 1}};
+  spec.members = {{{0, 1}, 0, 0, 40}};
+  spec.masses = {{1, mass}};
+  spec.supports = {{0, k_clamped}};
+  add_frame(model, spec);
+  const std::vector<Mode> modes = natural_modes(model, 0, 4);
+  ASSERT_EQ(modes.size(), 4u);
+  for (const Mode& mode : modes) EXPECT_FALSE(mode.rigid);
+  // shear takes 3e-4, forty elements a little more
+  const double exact = std::sqrt(3 * material.young * i / mass) / (2 * k_pi);
+  for (int k = 0; k < 2; ++k) EXPECT_NEAR(modes[k].frequency, exact, 2e-3 * exact);
+}
+
 TEST(Modes, a_held_body_has_no_rigid_modes_however_many_are_asked_for) {
   const Model model = square_beam(80, simply_supported());
   for (int count : {15, 20, 30}) {

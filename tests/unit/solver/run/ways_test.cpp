@@ -112,6 +112,13 @@ TEST(Ways, a_chain_that_ends_in_the_open_side_blocks_nothing) {
   EXPECT_NEAR(ways(room, plan_of(across))[0].widest, 0.4, 1e-12);
 }
 
+TEST(Ways, a_way_is_no_wider_than_where_it_begins) {
+  // between two shelves along the room whose ends are free
+  const Way way = ways(closed_room(), plan_of({box(1, 0.5, 1.2, 0.4), box(1, -0.5, 1.2, 0.4)}))[0];
+  EXPECT_TRUE(way.open);
+  EXPECT_NEAR(way.widest, 0.6, 1e-12);
+}
+
 TEST(Ways, a_ring_of_furniture_holds_who_stands_in_it) {
   const Room room = closed_room();
   std::vector<Footprint> ring;
@@ -211,6 +218,7 @@ bool reaches_on_grid(const Room& room, const RoomPlan& plan, double width, doubl
       if (print.distance(x) < width / 2 - slack) return false;
     return true;
   };
+  if (!is_free(room.places[0].at)) return false;
   std::vector<bool> seen(k_x * k_y, false);
   std::deque<std::pair<int, int>> queue{{50, 100}};
   seen[50 * k_y + 100] = true;
