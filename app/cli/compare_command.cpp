@@ -20,6 +20,7 @@
 #include "app/support/log.h"
 #include "app/support/terms.h"
 #include "solver/io/edit/scene_difference.h"
+#include "solver/io/edit/scene_save.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/recording/rerun.h"
 
@@ -43,6 +44,7 @@ constexpr std::size_t k_narrowest = 10, k_widest = 64;  // letters of a column
 struct Side {
   std::string source;
   io::Scene scene;
+  io::Scene started;     ///< with edits made before the first step, which it began with
   ordered_json summary;  ///< null: of a recording whose run was interrupted
   int exit_code = k_done;
   std::size_t edits = 0;  ///< while it ran
@@ -50,18 +52,31 @@ struct Side {
   std::unique_ptr<io::Recording> recording;  ///< of a scene only when pictures are wanted
 };
 
+/// `scene` as it starts with `now`; as it is where no scene can say so.
+io::Scene started(const io::Scene& scene, const Parameters& now) {
+  try {
+    return io::parse_scene(io::edited_scene(scene, now).text, scene.name, {}, io::files_of(scene));
+  } catch (const io::InputError&) {
+    return scene;
+  }
+}
+
 /// Reads a recording, or a scene without running it.
 Side open_side(const std::string& source) {
   Side side;
   side.source = source;
   if (!io::is_recording(source)) {
-    side.scene = io::load_scene(source);
+    side.started = side.scene = io::load_scene(source);
     return side;
   }
   side.recording = std::make_unique<io::Recording>(open_foreign_recording(source));
   side.scene = io::recorded_scene(*side.recording);
-  io::check_edits(side.recording->history(), side.scene.setup);
-  side.edits = side.recording->history().edits_on_way_to(side.recording->newest_branch()).size();
+  const History& history = side.recording->history();
+  const std::int32_t branch = side.recording->newest_branch();
+  io::check_edits(history, side.scene.setup);
+  side.edits = static_cast<std::size_t>(std::ranges::count_if(
+      history.edits_on_way_to(branch), [](const LoggedEdit& logged) { return logged.step > 0; }));
+  side.started = started(side.scene, parameters_at(side.scene.setup, history, branch, 0));
   if (!side.recording->summary_json().empty())
     side.summary = ordered_json::parse(side.recording->summary_json());
   return side;
@@ -112,7 +127,7 @@ ordered_json parameters(const Side& a, const Side& b) {
   const auto text = [](const std::optional<std::string>& value) {
     return value ? ordered_json(*value) : ordered_json(nullptr);
   };
-  for (const io::SceneDifference& d : io::differences(a.scene, b.scene))
+  for (const io::SceneDifference& d : io::differences(a.started, b.started))
     list.push_back({{"key", d.key}, {"a", text(d.a)}, {"b", text(d.b)}});
   if (a.edits != b.edits || a.edits > 0)
     list.push_back(

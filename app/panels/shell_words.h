@@ -53,6 +53,9 @@ inline constexpr Phrase k_diverged{"A step failed", "計算が収束しません
 inline constexpr Phrase k_diverged_about{
     "The run stands at the last good state; where it failed is highlighted. Change a parameter and go on.",
     "直前の正しい状態で止まっています。失敗した要素は強調表示されています。パラメータを変えて続けられます。"};
+inline constexpr Phrase k_path_failed_about{
+    "The path stands at its last equilibrium; where it failed is highlighted.",
+    "最後の釣合い状態で止まっています。失敗した要素は強調表示されています。"};
 inline constexpr Phrase k_not_begun{"The run could not begin", "計算を始められませんでした"};
 inline constexpr Phrase k_not_begun_about{
     "The furniture stands as the scene has it. Change the room (F2) or the scene file.",

@@ -8,6 +8,7 @@
 
 #include "app/panels/shell_words.h"
 #include "app/picture/solid_bodies.h"
+#include "app/support/terms.h"
 #include "solver/io/recording/recording.h"
 
 namespace topple::app {
@@ -221,9 +222,10 @@ void Shell::watch_trouble() {
                   : begun ? ww::k_diverged
                           : ww::k_not_begun),
               trouble,
-              !failed ? ""
-              : begun ? say(ww::k_diverged_about)
-                      : say(ww::k_not_begun_about),
+              !failed                                       ? ""
+              : !begun                                      ? say(ww::k_not_begun_about)
+              : is_static(session_->player().scene().setup) ? say(ww::k_path_failed_about)
+                                                            : say(ww::k_diverged_about),
               session_->player().can_halve_step()};
 }
 

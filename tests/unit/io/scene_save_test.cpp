@@ -260,6 +260,7 @@ TEST(SavedScene, the_share_of_alpha_between_members_that_was_chosen_stays_when_a
   const SavedScene saved = edited_scene(scene, now);
   const Scene again = parse_scene(saved.text, "again.toml", {}, files_of(scene));
   EXPECT_EQ(again.setup.parameters.contact.member_share, now.contact.member_share);
+  EXPECT_EQ(again.title, scene.title + " (changed)");  // it tells of what was before
 }
 
 TEST(SavedScene, what_an_absent_key_means_is_written_where_another_edit_would_change_it) {

@@ -1,4 +1,6 @@
 // topple compare: what differs, in what is said and in what happens.
+#include "app/batch/summary.h"
+#include "solver/io/recording/recording.h"
 #include "unit/app/program.h"
 #include "unit/app/scenes.h"
 
@@ -45,6 +47,23 @@ TEST_F(CompareTest, what_differs_stands_with_both_values_and_units) {
   for (const char* part : {"shake.table.amplitude  400 gal", "A: s.toml", "B: weak.h5",
                            "free: peak tilt, deg", "free: overturns at, s   no", "free: peak stress, MPa"})
     EXPECT_NE(ended.out.find(part), std::string::npos) << part << "\n" << ended.out;
+}
+
+TEST_F(CompareTest, what_was_changed_before_the_first_step_is_what_the_run_began_with) {
+  record("weak.h5", "shake.table.amplitude=0.1 g");
+  const io::Scene scene = io::load_scene("s.toml");
+  topple::Run run(scene.setup);
+  const Edit weaker{Edit::Key::amplitude, 0, Vec3(0.980665, 0, 0)};
+  run.edit(weaker);
+  io::Recorder recorder({"edited.h5", false}, scene.name, scene.text, scene.setup.model);
+  recorder.write(LoggedEdit{.edit = weaker});
+  io::Observer observer;
+  recorder.write(observer.observe(run));
+  while (!run.over() && run.advance().ok()) recorder.write(observer.observe(run));
+  recorder.finish("completed", summary(scene, run, "completed", 1).dump());
+  const Ended ended = topple({"compare", "weak.h5", "edited.h5"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("no parameter differs"), std::string::npos) << ended.out;
 }
 
 TEST_F(CompareTest, anchors_that_are_not_in_place_are_said_to_be_so) {

@@ -299,7 +299,7 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   const io::Scene saved = io::load_scene(path);
   EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(recent_files().front(), path);
-  EXPECT_EQ(saved.title, "A rocking cabinet for tests");
+  EXPECT_EQ(saved.title, "A rocking cabinet for tests (changed)");
   shell_->save_dialog().open(shell_->session()->scene());
   EXPECT_EQ(std::string(shell_->save_dialog().path), path) << "the same once more";
   shell_->save_dialog().close();
