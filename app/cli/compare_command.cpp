@@ -52,12 +52,20 @@ struct Side {
   std::unique_ptr<io::Recording> recording;  ///< of a scene only when pictures are wanted
 };
 
-/// `scene` as it starts with `now`; as it is where no scene can say so.
-io::Scene started(const io::Scene& scene, const Parameters& now) {
+/// Takes edits made before the first step into what the run started with, where a scene can say it; counts
+/// the others.
+void take_edits(Side& side, const History& history, std::int32_t branch) {
+  const std::vector<LoggedEdit> edits = history.edits_on_way_to(branch);
+  const auto later = std::ranges::count_if(edits, [](const LoggedEdit& edit) { return edit.step > 0; });
+  side.started = side.scene;
+  side.edits = edits.size();
+  if (side.edits == static_cast<std::size_t>(later)) return;
   try {
-    return io::parse_scene(io::edited_scene(scene, now).text, scene.name, {}, io::files_of(scene));
-  } catch (const io::InputError&) {
-    return scene;
+    const io::SavedScene saved =
+        io::edited_scene(side.scene, parameters_at(side.scene.setup, history, branch, 0));
+    side.started = io::parse_scene(saved.text, side.scene.name, {}, io::files_of(side.scene));
+    side.edits = static_cast<std::size_t>(later);
+  } catch (const io::InputError&) {  // they are told as made while it ran
   }
 }
 
@@ -71,12 +79,8 @@ Side open_side(const std::string& source) {
   }
   side.recording = std::make_unique<io::Recording>(open_foreign_recording(source));
   side.scene = io::recorded_scene(*side.recording);
-  const History& history = side.recording->history();
-  const std::int32_t branch = side.recording->newest_branch();
-  io::check_edits(history, side.scene.setup);
-  side.edits = static_cast<std::size_t>(std::ranges::count_if(
-      history.edits_on_way_to(branch), [](const LoggedEdit& logged) { return logged.step > 0; }));
-  side.started = started(side.scene, parameters_at(side.scene.setup, history, branch, 0));
+  io::check_edits(side.recording->history(), side.scene.setup);
+  take_edits(side, side.recording->history(), side.recording->newest_branch());
   if (!side.recording->summary_json().empty())
     side.summary = ordered_json::parse(side.recording->summary_json());
   return side;

@@ -200,8 +200,8 @@ void lift_out(const BodySystem& s, State& state) {
     const int index = model.node_body[s.node[i]];
     const Body& body = model.bodies[index];
     if (s.node[i] != body.first_node || state.bodies[index].level != ModelLevel::frame) continue;
-    const bool held = ranges::any_of(
-        model.supports, [&](const Support& support) { return model.node_body[support.node] == index; });
+    const auto is_own = [&](const Support& support) { return model.node_body[support.node] == index; };
+    if (ranges::any_of(model.supports, is_own)) continue;
     for (const Plane& plane : model.planes) {
       double deepest = 0;
       for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
@@ -209,7 +209,7 @@ void lift_out(const BodySystem& s, State& state) {
         deepest =
             std::max(deepest, point.width / 2 - plane.normal.dot(state.position[point.node] - plane.point));
       }
-      for (int n = body.first_node; !held && n < body.first_node + body.node_count; ++n)
+      for (int n = body.first_node; n < body.first_node + body.node_count; ++n)
         state.position[n] += deepest * plane.normal;
     }
   }

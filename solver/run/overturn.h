@@ -193,7 +193,7 @@ class Outcome {
   std::vector<char> flowed_;                              ///< per node: a section beside it has flowed
   int furniture_;                                         ///< bodies
   std::vector<Eigen::Vector4d> unit_stress_;              ///< per section: Pa by N, Mx, My and Mz of one
-  /// Per body, per side: N, on it and between it and the opposite side.
+  /// Per body, per side: N, on it (of what touches bodies on the half next to it), and on to the opposite.
   std::vector<std::vector<double>> side_force_, inner_force_;
   std::vector<std::vector<double>> depth_;  ///< per body, per side: m, from it to what is farthest from it
   std::vector<char> reaches_base_;   ///< per element, then per panel: a node of it is of its body's base

@@ -100,6 +100,15 @@ TEST_F(SummaryTest, bodies_that_were_computed_alike_share_a_line) {
   EXPECT_NE(table.find("\nb: rigid from 0.000 s"), std::string::npos) << table;
 }
 
+TEST_F(SummaryTest, a_run_that_goes_on_from_a_state_says_from_when_it_counts) {
+  while (run_.time() < 0.05) ASSERT_TRUE(run_.advance().ok());
+  topple::Run on(scene_.setup, run_.state(), run_.parameters());
+  const Json s = summary(scene_, on, "completed", 0);
+  EXPECT_EQ(s["counted_from_s"], run_.time());
+  EXPECT_NE(s["warnings"].dump().find("counted from"), std::string::npos) << s["warnings"];
+  EXPECT_FALSE(summary(scene_, run_, "completed", 0).contains("counted_from_s"));
+}
+
 TEST_F(SummaryTest, a_static_run_has_no_seconds) {
   Json s = summary(scene_, run_, "completed", 0);
   s["analysis"] = "static";
