@@ -167,7 +167,10 @@ ordered_json recording_description(const io::Recording& recording) {
   out["edits"] = ordered_json::array();
   for (const LoggedEdit& e : recording.history().edits) out["edits"].push_back(describe(e));
   out["events"] = ordered_json::array();
-  for (const io::RecordedEvent& e : recording.events_on_way_to(newest))
+  std::vector<io::RecordedEvent> events = recording.events_on_way_to(newest);
+  // an uplift is dated back to when the side let go; "time" of a static run is its load, which may sink
+  if (!is_static(scene.setup)) std::ranges::stable_sort(events, {}, &io::RecordedEvent::time);
+  for (const io::RecordedEvent& e : events)
     out["events"].push_back(describe(e, out["bodies"], out["anchors"]));
   out.erase("ways");  // those of the end are in the summary
   if (!recording.summary_json().empty()) out["summary"] = ordered_json::parse(recording.summary_json());

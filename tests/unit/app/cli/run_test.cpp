@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/io/recording/recording.h"
+#include "solver/io/scene/scene.h"
 #include "unit/app/program.h"
 #include "unit/app/scenes.h"
 
@@ -205,6 +207,25 @@ TEST_F(RunTest, the_same_scene_gives_the_same_states) {
   EXPECT_EQ(a["events"], b["events"]);
   ASSERT_EQ(topple({"run", "s.toml", "-o", "c.h5", "--set", "contact.friction=0.59"}).code, 0);
   EXPECT_NE(a["last_state_hash"], info("c.h5")["last_state_hash"]);
+}
+
+// An uplift is known late, and dated when the side let go.
+TEST_F(RunTest, events_are_told_in_the_order_of_time) {
+  ASSERT_EQ(topple({"run", "s.toml", "-o", "a.h5"}).code, 0);
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  const auto event = [](Event::Kind kind, std::int64_t step, double time) {
+    return io::RecordedEvent{0, step, time, {kind, step, time, 0, 0}};
+  };
+  {
+    io::Recorder recorder("b.h5", scene.name, scene.text, scene.setup.model);
+    recorder.write({.frames = {io::Recording("a.h5").frame(0)},
+                    .checkpoint = {},
+                    .events = {event(Event::Kind::impact, 25, 0.025), event(Event::Kind::uplift, 30, 0.02)}});
+    recorder.flush();
+  }
+  EXPECT_EQ(info("b.h5")["events"][0]["kind"], "uplift");
+  const std::string told = topple({"info", "b.h5"}).out;
+  EXPECT_LT(told.find("0.0200 s  free uplift"), told.find("0.0250 s  free impact")) << told;
 }
 
 TEST_F(RunTest, threads_change_no_state) {
