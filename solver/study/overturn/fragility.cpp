@@ -66,9 +66,9 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
   if (most_hit == 0) return "no run " + verb;
   if (most_miss == 0) return "every run " + verb;
   if (most_miss < least_hit)
-    return fmt::format("every run {} from {:.6g} on and none up to {:.6g}: the median lies between", verb,
+    return fmt::format("every run {} from {:.4g} on and none up to {:.4g}: the median lies between", verb,
                        least_hit, most_miss);
-  if (levels.size() == 1) return fmt::format("there are runs at {:.6g} alone", least_hit);
+  if (levels.size() == 1) return fmt::format("there are runs at {:.4g} alone", least_hit);
   if (most_miss == least_hit) {
     const Level& level = *std::ranges::find(levels, least_hit, &Level::intensity);
     const int above = level.runs - 2 * level.hits;  // where the median is: > 0 above this level
@@ -79,10 +79,10 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
       if (other.intensity > least_hit) after = std::min(after, other.intensity);
     }
     return fmt::format(
-        "runs differ at {:.6g} alone ({} of {}): the median lies {}", least_hit, level.hits, level.runs,
+        "runs differ at {:.4g} alone ({} of {}): the median lies {}", least_hit, level.hits, level.runs,
         above == 0  ? "near it"
-        : above > 0 ? (after < k_far ? fmt::format("between it and {:.6g}", after) : "beyond it")
-                    : (before > 0 ? fmt::format("between {:.6g} and it", before) : "below it"));
+        : above > 0 ? (after < k_far ? fmt::format("between it and {:.4g}", after) : "beyond it")
+                    : (before > 0 ? fmt::format("between {:.4g} and it", before) : "below it"));
   }
   if (most_hit <= least_miss) return "it does not become more frequent";
   return "";

@@ -12,9 +12,10 @@ namespace topple::study {
 namespace {
 
 constexpr int k_sheet_width = 1240;
-constexpr int k_head = 176, k_panel_head = 150, k_plot = 430, k_foot = 84;  // px, heights
-constexpr int k_from_left = 92, k_from_right = 26;                          // px, around a panel
-constexpr double k_lines = 22;                                              // px, pitch
+constexpr int k_head = 176, k_criteria = 84, k_plot = 430, k_foot = 84;  // px, heights
+constexpr int k_from_left = 92, k_from_right = 26;                       // px, around a panel
+constexpr double k_lines = 22;                                           // px, pitch
+constexpr double k_key = 44;                                             // px, beside words
 
 struct StateLook {
   const char *colour, *point;
@@ -56,8 +57,15 @@ class FragilityChart {
     }
     if (!results.closed.empty()) panels_.push_back(ways());
     columns_ = panels_.size() > 1 ? 2 : 1;
+    std::size_t most = 0;
+    for (const Panel& of : panels_) {
+      std::size_t lines = 0;
+      for (const Panel::Curve& curve : of.curves) lines += words(of, curve).size();
+      most = std::max(most, lines);
+    }
+    panel_head_ = k_criteria + static_cast<int>(k_lines) * static_cast<int>(most);
     const int rows = (static_cast<int>(panels_.size()) + columns_ - 1) / columns_;
-    sheet_ = {k_sheet_width, k_head + rows * (k_panel_head + k_plot + k_foot)};
+    sheet_ = {k_sheet_width, k_head + rows * (panel_head_ + k_plot + k_foot)};
   }
 
   std::string script(const std::string& origin, ChartFormat format) const {
@@ -127,31 +135,19 @@ class FragilityChart {
     return out;
   }
 
-  /// What stands above a panel, a line a curve.
-  std::vector<std::string> words(const Panel& of) const {
-    std::vector<std::string> lines;
-    for (const auto& [word, drawn] : of.curves) {
-      const FragilityCurve& curve = *drawn;
-      if (!curve.fit.fit) {
-        lines.push_back(word + ": no curve, " + curve.fit.why_not);
-        continue;
-      }
-      const std::string unit = plan_.levels.unit.empty() ? "" : " " + plan_.levels.unit;
-      const Interval median = curve.median_of_records.value_or(curve.median_of_runs),
-                     beta = curve.beta_of_records.value_or(curve.beta_of_runs);
-      lines.push_back(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g}){}", word,
-                                  curve.median, unit, between(median), curve.fit.fit->beta, beta.low,
-                                  beta.high, curve.scatter > 1 ? "; a poor fit" : ""));
-    }
-    return lines;
-  }
-
-  /// Samples of the looks of curves that the sheet's key does not name, beside their words.
-  std::string key(const Panel& of, double left, double top) const {
-    std::string out;
-    for (std::size_t s = 0; of.keyed && s < of.curves.size(); ++s)
-      out += sample(s, left, top - k_lines * static_cast<double>(s));
-    return out;
+  /// Lines about a curve above its panel.
+  std::vector<std::string> words(const Panel& of, const Panel::Curve& drawn) const {
+    const FragilityCurve& curve = *drawn.of;
+    const double room = static_cast<double>(k_sheet_width) / columns_ - k_from_left - k_from_right;
+    const double width = room - (of.keyed ? k_key : 0);
+    if (!curve.fit.fit) return wrapped(drawn.word + ": no curve, " + curve.fit.why_not, width);
+    const std::string unit = plan_.levels.unit.empty() ? "" : " " + plan_.levels.unit;
+    const Interval median = curve.median_of_records.value_or(curve.median_of_runs),
+                   beta = curve.beta_of_records.value_or(curve.beta_of_runs);
+    return wrapped(fmt::format("{}: median {:.4g}{} ({}), β {:.3g} ({:.2g} to {:.2g}){}", drawn.word,
+                               curve.median, unit, between(median), curve.fit.fit->beta, beta.low, beta.high,
+                               curve.scatter > 1 ? "; a poor fit" : ""),
+                   width);
   }
 
   std::string sample(std::size_t look, double x, double y) const {
@@ -167,12 +163,16 @@ class FragilityChart {
                  right = left - k_from_left + width - k_from_right;
     const double top =
         sheet_.height - k_head -
-        static_cast<double>(k / static_cast<std::size_t>(columns_)) * (k_panel_head + k_plot + k_foot);
-    const double plot_top = top - k_panel_head, bottom = plot_top - k_plot;
-    const double indent = of.keyed ? 44 : 0;
-    std::string out = sheet_.label(bold(plain(of.title), 1.15), left, top - 12) + key(of, left, top - 38) +
-                      sheet_.lines(shortened(words(of), right - left - indent), left + indent, top - 38,
-                                   k_lines, k_grey_as_is);
+        static_cast<double>(k / static_cast<std::size_t>(columns_)) * (panel_head_ + k_plot + k_foot);
+    const double plot_top = top - panel_head_, bottom = plot_top - k_plot;
+    std::string out = sheet_.label(bold(plain(of.title), 1.15), left, top - 12);
+    double y = top - 38;
+    for (std::size_t s = 0; s < of.curves.size(); ++s) {
+      const std::vector<std::string> lines = words(of, of.curves[s]);
+      if (of.keyed) out += sample(s, left, y);  // the sheet's key does not name it
+      out += sheet_.lines(lines, left + (of.keyed ? k_key : 0), y, k_lines, k_grey_as_is);
+      y -= k_lines * static_cast<double>(lines.size());
+    }
     out +=
         sheet_.place(left, right, bottom, plot_top) + axis_scale("x", plan_.levels) +
         axis_label("x", measure_axis(), "0,0.2") +
@@ -190,10 +190,17 @@ class FragilityChart {
     return axis;
   }
 
-  static std::vector<std::string> shortened(std::vector<std::string> lines, double width) {
-    const auto most = static_cast<std::size_t>(width / 8.9);
-    for (std::string& line : lines)
-      if (line.size() > most) line = line.substr(0, line.rfind(' ', most)) + " …";
+  /// In lines of a width, px, those behind the first indented.
+  static std::vector<std::string> wrapped(std::string rest, double width) {
+    const auto most = static_cast<std::size_t>(width / 9.2);
+    std::vector<std::string> lines;
+    while (rest.size() > most) {
+      const std::size_t end = rest.rfind(' ', most);
+      if (end == std::string::npos || rest.find_first_not_of(' ') > end) break;
+      lines.push_back(rest.substr(0, end));
+      rest = "    " + rest.substr(end + 1);
+    }
+    lines.push_back(rest);
     return lines;
   }
 
@@ -262,6 +269,7 @@ class FragilityChart {
   const std::vector<std::size_t> shown_;
   std::vector<Panel> panels_;
   int columns_ = 1;
+  int panel_head_ = 0;  // px
   Sheet sheet_{};
 };
 

@@ -55,12 +55,20 @@ std::string rows_of(const std::vector<Point>& points) {
   return rows;
 }
 
+/// As many names as there is room for.
+std::string shown_names(const BodyGroup& group) {
+  constexpr std::size_t k_most = 24;
+  if (group.names.size() <= k_most) return plain(group.names);
+  const std::string first = group.names.substr(0, group.names.find(", "));
+  return plain(first) + (group.bodies.size() > 1 ? fmt::format(" and {} more", group.bodies.size() - 1) : "");
+}
+
 /// "3.6·10^{-8} µm" for gnuplot's enhanced mode.
 std::string micrometres(double way) {
   const double value = 1e6 * way;
   if (!(value > 0)) return "0 µm";
   const int power = static_cast<int>(std::floor(std::log10(value)));
-  if (power >= -2 && power <= 2) return fmt::format("{:.2g} µm", value);
+  if (power >= -2 && power <= 1) return fmt::format("{:.2g} µm", value);
   return fmt::format("{:.1f}·10^{{{}}} µm", value / std::pow(10., power), power);
 }
 
@@ -191,15 +199,15 @@ class Chart {
         "set logscale x\nset xrange [{}:{}]\nset format x '10^{{%T}}'\nset mxtics 10\n"
         "set xlabel 'penalty coefficient α, kgf' offset 0,0.3\n",
         least, most);
-    const auto mark = [&](double alpha, const char* text, const char* style) {
+    const auto mark = [&](double alpha, const char* text, double above, const char* style) {
       const double x = in_kgf(alpha);
       const bool right = x > std::sqrt(least * most);
-      return upright(x, from, to, style, text, from + 0.03,
+      return upright(x, from, to, style, text, from + above,
                      right ? "right offset -0.5,0" : "left offset 0.5,0");
     };
-    out += mark(study_.law.alpha, "scene", "lc rgb '#111111' lw 1.6 dt (10,5)");
+    out += mark(study_.law.alpha, "scene", 0.03, "lc rgb '#111111' lw 1.6 dt (10,5)");
     if (advice_.alpha && std::abs(*advice_.alpha / study_.law.alpha - 1) > 1e-6)
-      out += mark(*advice_.alpha, "recommended", "lc rgb '#111111' lw 1.8 dt 1");
+      out += mark(*advice_.alpha, "recommended", 0.08, "lc rgb '#111111' lw 1.8 dt 1");
     return out;
   }
 
@@ -227,12 +235,14 @@ class Chart {
     std::set<double> drawn;
     for (const PenaltyRow& row : study_.rows)
       if (row.kind == Case::force) drawn.insert(row.law.q);
+    const bool kilo = study_.law.alpha >= 1e4;  // numbers of five digits have no room
+    const double unit = kilo ? 1e3 : 1;
     Plot plot;
     int k = 0;
     for (const double q : drawn) {
       const bool own = q == study_.law.q;
-      const std::string line = rows(Case::force, [q](const PenaltyRow& row, auto& out) {
-        if (row.law.q == q) out.push_back({*row.at, *row.computed});
+      const std::string line = rows(Case::force, [q, unit](const PenaltyRow& row, auto& out) {
+        if (row.law.q == q) out.push_back({*row.at, *row.computed / unit});
       });
       plot.add(fmt::format("force{}", k), line,
                fmt::format("with lines {} title 'q = {:g}{}'", line_style(k, own ? 4 : 2), q,
@@ -242,17 +252,17 @@ class Chart {
     std::vector<Point> rest;
     for (const int g : drawn_) {
       const double depth = rest_depth(group(g).theory, study_.law);
-      rest.push_back({1 - depth, study_.law.alpha * std::pow(depth, study_.law.q)});
+      rest.push_back({1 - depth, study_.law.alpha / unit * std::pow(depth, study_.law.q)});
     }
     plot.add("rest", rows_of(rest), "with points lc rgb '#111111' pt 6 ps 1.9 lw 2 title 'at rest'");
     return plot.data +
            panel(0, "Force of a contact against its depth",
                  fmt::format("α (1 − l/L)^q of Eq. 2, α = {} = {:.4g} N", kgf_text(study_.law.alpha),
                              study_.law.alpha)) +
-           fmt::format("set xrange [0:1]\nset yrange [0:{}]\nset key top right\n", 1.02 * study_.law.alpha) +
-           "set xlabel 'distance of the centre lines l / L' offset 0,0.3\n"
-           "set ylabel 'force, N' offset 1,0\n" +
-           plot.command();
+           fmt::format("set xrange [0:1]\nset yrange [0:{}]\nset key top right\n",
+                       1.02 * study_.law.alpha / unit) +
+           "set xlabel 'distance of the centre lines l / L' offset 0,0.3\n" +
+           fmt::format("set ylabel 'force, {}' offset 1,0\n", kilo ? "kN" : "N") + plot.command();
   }
 
   std::string depth() const {
@@ -267,7 +277,7 @@ class Chart {
       const std::string settled = rows(Case::depth, [g](const PenaltyRow& row, auto& out) {
         if (row.group == g && *row.computed > 0) out.push_back({in_kgf(row.law.alpha), *row.computed});
       });
-      const std::string names = plain(group(g).names);
+      const std::string names = shown_names(group(g));
       plot.add(
           fmt::format("theory{}", k), rows_of(line),
           fmt::format("with lines {} title {}", line_style(k, 2), gnuplot_quoted(names + ": rigid, theory")));
@@ -277,7 +287,7 @@ class Chart {
     return plot.data +
            panel(1, "Depth at rest", "deepest contact; theory: (W / n α)^{1/q} where evenly loaded") +
            alpha_axis(0, 1) + level(k_depth_bound, "bound 1 %") + decades("y", least, most) +
-           log_axis("y", "10^{%T}") + "set key top right\nset ylabel 'depth 1 − l / L' offset 1,0\n" +
+           log_axis("y", "10^{%T}") + "set key bottom left\nset ylabel 'depth 1 − l / L' offset 1,0\n" +
            plot.command();
   }
 
@@ -296,20 +306,19 @@ class Chart {
         most = std::max(most, shown);
         const std::string text = row.computed ? micrometres(*row.computed) : row.status;
         values += fmt::format("set label {} at first {},first {} {} offset 0,0.9 font ',11'\n",
-                              gnuplot_quoted(text), 1e6 * shown, y,
-                              shown > 0.1 * most && shown > k_creep_bound ? "right" : "left");
+                              gnuplot_quoted(text), 1e6 * shown, y, shown > k_creep_bound ? "right" : "left");
       }
       plot.add(fmt::format("creep{}", k), rows_of(list),
                fmt::format("with points {} title {}", mark_style(k),
-                           gnuplot_quoted(plain(group(drawn_[k]).names))));
+                           gnuplot_quoted(shown_names(group(drawn_[k])))));
     }
     for (const ContactLawTraits& law : contact_laws())
       names += fmt::format("{}'{}' {}", names.empty() ? "" : ",", law.word,
                            -topple::place_of(contact_laws(), law.kind));
     return plot.data +
            panel(2, "Creep at rest", fmt::format("greatest way of a node in {:g} s at rest", k_creep_time)) +
-           "set logscale x\nset format x '10^{%T}'\nset yrange [-2.6:0.9]\nset key top left\n"
-           "set mxtics 10\nset ylabel ''\n" +
+           "set logscale x\nset format x '10^{%T}'\nset key top left\nset mxtics 10\nset ylabel ''\n" +
+           fmt::format("set yrange [-2.6:{:g}]\n", 0.7 + 0.2 * static_cast<double>(drawn_.size())) +
            decades("x", 1e6 * k_least, 1e6 * most) + "set ytics (" + names + ")\n" + values +
            upright(1e6 * k_creep_bound, 0, 1, k_bound_line, "bound 1 µm", 0.03, "offset 0.5,0") +
            "set xlabel 'way, µm' offset 0,0.3\n" + plot.command();
@@ -383,7 +392,7 @@ class Chart {
     plot.add("line", rows_of(line), "with lines " + line_style(0, 2) + " title 'rigid, theory'");
     plot.add("bounce", bounce, "with points " + mark_style(0) + " title 'solver'");
     return plot.data +
-           panel(4, "Contact frequency", "vertical motion of " + plain(body.names) + " about rest") +
+           panel(4, "Contact frequency", "vertical motion of " + shown_names(body) + " about rest") +
            alpha_axis(0, 0.86) + decades("y", line.front().y, most) + levels + log_axis("y", "%g") +
            "set key top left\nset ylabel 'frequency, Hz' offset 1,0\n" + plot.command();
   }
@@ -414,11 +423,11 @@ class Chart {
                            both_style(k == 0 ? 1 : 3), k_pulse_ratios[k]));
     return plot.data +
            panel(5, "Error against rigid contact",
-                 fmt::format("{}: b/h = {:.3g}, {:.4g} gal; 0.01 % stands for less", plain(body.names), rigid,
+                 fmt::format("{}: b/h = {:.3g}, {:.4g} gal", shown_names(body), rigid,
                              rigid * body.theory.gravity / k_gal)) +
            alpha_axis(0.27, 1) + level(100 * k_theory_bound, "bound 2 %") +
            "set logscale y\nset yrange [0.0005:100]\nset format y '%g'\nset mytics 10\nset key bottom left\n"
-           "set ylabel '|error|, %' offset 1,0\n" +
+           "set ylabel '|error|, % (0.01 stands for less)' offset 1,0\n" +
            plot.command();
   }
 

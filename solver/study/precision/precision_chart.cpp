@@ -13,7 +13,7 @@ namespace {
 
 // px
 constexpr Sheet k_sheet{1800, 1510};
-constexpr int k_left = 92, k_right = 24, k_gap = 104, k_columns = 3;
+constexpr int k_left = 116, k_right = 24, k_gap = 122, k_columns = 3;  // numbers like 0.0001 before panels
 constexpr int k_first = 1126, k_pitch = 486,
               k_panel = 340;   // top of the first row of panels, row to row, height
 constexpr int k_tables = 196;  // top of the tables

@@ -110,6 +110,19 @@ TEST(PenaltyStudy, the_chart_says_what_it_shows) {
     EXPECT_NE(svg.find(part), std::string::npos) << part;
 }
 
+TEST(PenaltyStudy, long_texts_of_the_chart_are_shortened_to_have_room) {
+  PenaltyStudy hard = complete();
+  EXPECT_NE(penalty_chart(hard, advise(hard), "topple", ChartFormat::svg).find("'force, N'"),
+            std::string::npos);
+  hard.law.alpha = 4e5;
+  hard.groups[0].names = "cabinet, cabinet-2, cabinet-3, cabinet-4";
+  hard.groups[0].bodies = {0, 2, 3, 4};
+  const std::string chart = penalty_chart(hard, advise(hard), "topple", ChartFormat::svg);
+  EXPECT_NE(chart.find("'force, kN'"), std::string::npos);
+  EXPECT_NE(chart.find("cabinet and 3 more: settled"), std::string::npos);
+  EXPECT_EQ(chart.find("cabinet-2: settled"), std::string::npos);
+}
+
 TEST(PenaltyStudy, the_chart_is_drawn_of_what_was_run) {
   const PenaltyStudy none = slippery([](int, int) { return false; }, 1);
   EXPECT_TRUE(
