@@ -143,7 +143,10 @@ bool FurnishView::press_with_control(const render::KeyPress& press) {
 bool FurnishView::press(const render::KeyPress& press) {
   const ImGuiIO& io = ImGui::GetIO();
   namespace key = render::key;
-  if (io.WantTextInput) return press.key != key::f1 && press.key != key::f2;
+  if (io.WantTextInput) {
+    if (press.key == key::escape) typed_.reset();
+    return press.key != key::f1 && press.key != key::f2;
+  }
   if (panels_have_keys_ && io.NavVisible && press.key != key::escape && press.key != key::f6 &&
       !press.control)
     return true;

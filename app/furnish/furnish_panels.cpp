@@ -99,14 +99,17 @@ void FurnishView::draw_kinds(const render::OverlayFonts& fonts) {
   }
 }
 
-bool FurnishView::number_field(const std::string& words, double value, const char* format,
-                               double& changed) const {
+bool FurnishView::number_field(const std::string& words, double value, const char* format, double& changed) {
   field_label(words);
   double now = value;
   ImGui::PushID(words.c_str());
-  ImGui::InputDouble("##value", &now, 0, 0, format);
+  // who leaves a field by a click may leave it with the value from before
+  if (ImGui::InputDouble("##value", &now, 0, 0, format)) typed_ = now;
   ImGui::PopID();
-  if (!ImGui::IsItemDeactivatedAfterEdit() || now == value || !std::isfinite(now)) return false;
+  if (ImGui::IsItemActivated()) typed_.reset();
+  if (!ImGui::IsItemDeactivated()) return false;
+  now = std::exchange(typed_, std::nullopt).value_or(value);
+  if (now == value || !std::isfinite(now)) return false;
   changed = now;
   return true;
 }

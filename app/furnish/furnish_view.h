@@ -149,7 +149,7 @@ class FurnishView {
   void draw_side(const render::OverlayFonts& fonts);
   void draw_kinds(const render::OverlayFonts& fonts);
   void draw_piece();
-  bool number_field(const std::string& label, double value, const char* format, double& changed) const;
+  bool number_field(const std::string& label, double value, const char* format, double& changed);
   void draw_piece_numbers(const RoomPiece& piece);
   void draw_room();
   void draw_walls();
@@ -185,6 +185,7 @@ class FurnishView {
   ShellRequest asked_ = ShellRequest::none;
   char name_[256] = {}, own_kind_[1024] = {};
   std::string named_, message_;  ///< named_: whose name name_ is
+  std::optional<double> typed_;  ///< so far, in the number field that has the keyboard
 };
 
 }  // namespace topple::app

@@ -8,6 +8,8 @@
 namespace topple::app {
 namespace {
 
+namespace fw = furnish_words;
+
 class FurnishTest : public ShellTest {
  protected:
   void SetUp() override {
@@ -57,6 +59,23 @@ class FurnishTest : public ShellTest {
     const auto found =
         pixel_of(view().orbit().camera(box.width / box.height), box.width, box.height, place.cast<float>());
     return {found->x(), found->y()};
+  }
+  /// In place of what the field of the selected piece has.
+  void type_into_field(const Phrase& words, const std::string& text) {
+    ImGuiWindow* side = nullptr;
+    for (ImGuiWindow* const window : ImGui::GetCurrentContext()->Windows)
+      if (std::string_view(window->Name).starts_with("side/content")) side = window;
+    ASSERT_NE(side, nullptr);
+    const ImGuiID id = ImHashStr("##value", 0, ImHashStr(std::string(words.english).c_str(), 0, side->ID));
+    ImGuiIO& io = ImGui::GetIO();
+    for (float y = side->Pos.y; y < side->Pos.y + side->Size.y && ImGui::GetHoveredID() != id; y += 8) {
+      io.MousePos = {side->Pos.x + 0.6f * side->Size.x, y};
+      frames(2);
+    }
+    ASSERT_EQ(ImGui::GetHoveredID(), id);
+    click_at(io.MousePos, [this] { frame(); });
+    tap(GLFW_KEY_A, true);
+    type(text);
   }
   ImVec2 middle_of(const RoomPiece& piece) {
     return pixel(Vec3(piece.spot.at.x(), piece.spot.at.y(), piece.floor + piece.size.z() / 2));
@@ -130,6 +149,29 @@ TEST_F(FurnishTest, keys_move_turn_copy_and_remove_what_is_selected) {
   press(render::key::del);
   EXPECT_EQ(room().pieces().size(), 2u);
   EXPECT_FALSE(room().piece("chest-2"));
+}
+
+TEST_F(FurnishTest, a_number_that_was_typed_is_taken_when_its_field_is_left_but_not_after_escape) {
+  connect_keyboard();
+  place("chest", {0.5, -0.5});
+  click("Selected", "side");
+  const double x = room().piece("chest")->spot.at.x();
+  const ImVec2 bookshelf = middle_of(*room().piece("bookshelf"));
+  type_into_field(fw::k_x, "0.8");
+  tap(GLFW_KEY_ESCAPE);
+  EXPECT_EQ(room().piece("chest")->spot.at.x(), x);
+  type_into_field(fw::k_x, "0.8");
+  EXPECT_EQ(room().piece("chest")->spot.at.x(), x) << "not while it is typed";
+  const RoomPiece other = *room().piece("bookshelf");
+  click_at(bookshelf, [this] { frame(); });
+  EXPECT_EQ(view().selected(), "bookshelf");
+  EXPECT_EQ(room().piece("chest")->spot.at.x(), 0.8) << room().refused();
+  EXPECT_EQ(room().piece("bookshelf")->spot.at, other.spot.at);
+  view().select("chest");
+  frames(2);
+  type_into_field(fw::k_x, "0.6");
+  click("Room", "side");  // drawn before the field
+  EXPECT_EQ(room().piece("chest")->spot.at.x(), 0.6) << room().refused();
 }
 
 TEST_F(FurnishTest, two_clicks_make_a_wall_and_two_a_fixing) {
