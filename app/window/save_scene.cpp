@@ -38,12 +38,16 @@ bool put_beside(const io::SceneFile& file, const std::string& path) {
   return true;
 }
 
-/// Of a scene in the working folder, where no file is yet.
-std::string free_path(const std::string& name) {
+/// `path` with a number behind its name, under which no file is yet.
+std::string free_path(const fs::path& path) {
+  std::string stem = path.stem().string();
+  const std::size_t dash = stem.rfind('-');
+  if (dash != std::string::npos && stem.find_first_not_of("0123456789", dash + 1) == std::string::npos)
+    stem.resize(dash);
   std::error_code ignored;
   fs::path free;
   int number = 1;
-  do free = fs::current_path(ignored) / (name + "-" + std::to_string(number++) + ".toml");
+  do free = path.parent_path() / (stem + "-" + std::to_string(number++) + ".toml");
   while (fs::exists(free, ignored));
   return free.string();
 }
@@ -70,9 +74,13 @@ std::vector<std::string> save_scene(const io::Scene& scene, const Parameters& no
 
 void SaveDialog::open(const io::Scene& scene) {
   open_ = appeared_ = true;
+  ++opened_;
   exists_.clear();
   refused_.clear();
-  const std::string text = !saved_.empty() && saved_name_ == scene.name ? saved_ : free_path(scene.name);
+  std::error_code ignored;
+  const std::string text = free_path(saved_name_ == scene.name && !saved_.empty()
+                                         ? fs::path(saved_)
+                                         : fs::current_path(ignored) / (scene.name + ".toml"));
   text.copy(path, sizeof path - 1);
   path[std::min(text.size(), sizeof path - 1)] = '\0';
 }
@@ -88,10 +96,12 @@ std::string SaveDialog::draw(const io::Scene& scene, const Parameters& now, cons
   ImGui::TextDisabled("%s", say(ww::k_save_scene_about).c_str());
   ImGui::PopTextWrapPos();
   if (std::exchange(appeared_, false)) ImGui::SetKeyboardFocusHere();
+  ImGui::PushID(opened_);  // a field that is known already comes back without its text selected
   if (draw_path_field(path, files_, {true, say(ww::k_save_scene), path, {".toml"}})) {
     exists_.clear();
     refused_.clear();
   }
+  ImGui::PopID();
   if (exists_ != path) exists_.clear();
   if (!exists_.empty() || !refused_.empty()) {
     ImGui::PushTextWrapPos(0);

@@ -23,7 +23,7 @@ class SaveDialog {
  public:
   explicit SaveDialog(FileDialog& files) : files_(files) {}
 
-  /// Proposes the path under which the scene was saved last, else one that is free.
+  /// Proposes a path where no file is, beside where the scene was saved last.
   void open(const io::Scene& scene);
   void close() { open_ = false; }
   bool is_open() const { return open_; }
@@ -41,6 +41,7 @@ class SaveDialog {
  private:
   FileDialog& files_;
   bool open_ = false, appeared_ = false, enter_ = false;
+  int opened_ = 0;                  ///< times
   std::string exists_;              ///< the path that is there already, about which it asks
   std::string refused_;             ///< why it is not written
   std::string saved_, saved_name_;  ///< where it saved last, and the name of that scene

@@ -300,9 +300,21 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(recent_files().front(), path);
   EXPECT_EQ(saved.title, "A rocking cabinet for tests (changed)");
-  shell_->save_dialog().open(shell_->session()->scene());
-  EXPECT_EQ(std::string(shell_->save_dialog().path), path) << "the same once more";
-  shell_->save_dialog().close();
+  const auto proposal = [&] {
+    shell_->save_dialog().open(shell_->session()->scene());
+    frame();
+    frame();
+    const ImGuiInputTextState& field = ImGui::GetCurrentContext()->InputTextState;
+    EXPECT_EQ(field.ID, ImGui::GetActiveID());
+    EXPECT_EQ(std::abs(field.Stb.select_end - field.Stb.select_start), field.CurLenW);
+    EXPECT_GT(field.CurLenW, 0);
+    shell_->save_dialog().close();
+    frame();
+    return std::string(shell_->save_dialog().path);
+  };
+  EXPECT_EQ(proposal(), (scratch_ / "kept-1.toml").string());
+  save_as((scratch_ / "kept-1.toml").string());
+  EXPECT_EQ(proposal(), (scratch_ / "kept-2.toml").string());
 
   const std::string other = write("other.toml", "mine");
   save_as(other);
