@@ -13,12 +13,14 @@
 #include "app/page/page_words.h"
 #include "app/page/verdict.h"
 #include "app/picture/replay.h"
+#include "app/picture/window_words.h"
 #include "app/report/svg_chart.h"
 #include "app/support/base64.h"
 #include "app/support/errors.h"
 #include "app/support/terms.h"
 #include "render/gl/off_screen.h"
 #include "render/output/picture.h"
+#include "solver/io/document/scene_document.h"
 
 namespace topple::app {
 namespace {
@@ -223,11 +225,13 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
   if (!rows) return "";
   const std::vector<BodyEnd> ends = ends_of(summary_of(run), rows->ends);
   const ReplayOnly only = why_replay_only(scene, run);
-  const std::string title = escaped(scene.title.empty() ? scene.name : scene.title);
+  std::string title = scene.title.empty() ? scene.name : scene.title;
+  if (run.edited && !title.ends_with(io::k_title_changed))
+    title = say_in(language, window_words::k_title_changed, title);
   return filled(
       page_template(),
       {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
-       {"@TITLE@", title},
+       {"@TITLE@", escaped(title)},
        {"@STILLS@", stills(scene, run, *rows)},
        {"@VERDICT@", escaped(verdict_in_words(ends, language))},
        {"@ONLY@",

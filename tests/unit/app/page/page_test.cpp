@@ -232,7 +232,7 @@ class ExportPageTest : public ProgramTest {
   }
 
   /// A recording of a block's run, with this wall time in its summary.
-  static void record_block(const std::string& file, double wall) {
+  static void record_block(const std::string& file, double wall, bool edited = false) {
     const io::Scene scene = io::parse_scene(
         "topple = 1\nfloor = {}\n[run]\nduration = 0.1\nwant = [\"motion\"]\n[[block]]\n"
         "size = [0.3, 0.6, 1.5]\nmass = 60\n",
@@ -240,6 +240,7 @@ class ExportPageTest : public ProgramTest {
     topple::Run run(scene.setup);
     io::Observer observer;
     io::Recorder recorder({file, true}, scene.name, scene.text, scene.setup.model);
+    if (edited) recorder.write(LoggedEdit{.edit = {Edit::Key::friction, 0, Vec3(0.3, 0, 0)}});
     recorder.write(observer.observe(run));
     while (!run.over()) run.advance(), recorder.write(observer.observe(run));
     recorder.write(observer.last(run));
@@ -262,6 +263,19 @@ TEST_F(ExportPageTest, a_run_that_takes_long_is_replayed_only_and_the_page_says_
   }
   ASSERT_EQ(topple({"export", "block.h5", "--page", "page.html", "--lang", "ja", "--force"}).code, 0);
   EXPECT_NE(bytes_of("page.html").find("このページは再生のみ。1回の計算に約4秒かかり"), std::string::npos);
+}
+
+TEST_F(ExportPageTest, the_title_of_a_run_that_was_edited_says_so_in_the_words_of_the_window) {
+  const auto title = [](bool edited, const char* language) {
+    record_block("block.h5", 0.1, edited);
+    EXPECT_EQ(topple({"export", "block.h5", "--page", "page.html", "--lang", language, "--force"}).code, 0);
+    const std::string page = bytes_of("page.html"), begin = "<title>";
+    const std::size_t at = page.find(begin) + begin.size();
+    return page.substr(at, page.find('<', at) - at);
+  };
+  EXPECT_EQ(title(false, "en"), "block");
+  EXPECT_EQ(title(true, "en"), "block (changed)");
+  EXPECT_EQ(title(true, "ja"), "block（変更あり）");
 }
 
 TEST_F(ExportPageTest, ten_thousand_rows_are_thinned_evenly_and_the_last_is_kept) {
