@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/panels/teaching_words.h"
+#include "solver/io/common/units.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 #include "solver/study/common/alone.h"
@@ -57,7 +58,7 @@ void shake_as_sine(Player& player, double frequency, double amplitude) {
   Vec3 number = edited_value(player.parameters(), Edit::Key::frequency, 0);
   number.x() = frequency;
   post(Edit::Key::frequency, number);
-  post(Edit::Key::amplitude, Vec3(amplitude * k_gal, 0, 0));
+  post(Edit::Key::amplitude, Vec3(io::in_si(amplitude, k_gal), 0, 0));
 }
 
 DemoGuide::DemoGuide(const Demo& demo, Player& player)

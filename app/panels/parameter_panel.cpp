@@ -13,6 +13,7 @@
 #include "app/picture/furnish_words.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
+#include "solver/io/common/units.h"
 #include "solver/io/edit/edit_text.h"
 #include "solver/io/scene/scene.h"
 #include "solver/model/accelerogram.h"
@@ -110,7 +111,7 @@ class Row {
     const auto from_shown = [&](double number) {
       if (look.key == Edit::Key::direction) return turned(edit_.value, number);
       Vec3 value = edit_.value;
-      value[look.component] = number * unit;
+      value[look.component] = io::in_si(number, unit);
       return value;
     };
     ImGui::SetNextItemWidth(-1.9f * ImGui::GetFrameHeight());

@@ -158,6 +158,11 @@ std::string dimensions_of(std::string_view symbol) {
 
 }  // namespace
 
+double in_si(double number, double unit) {
+  // 70 cm is 70 / 100, correctly rounded; 70 * 0.01 is not
+  return unit < 1 ? number / (1 / unit) : number * unit;
+}
+
 Quantity parse_quantity(std::string_view text, Dimension expected) {
   std::string_view rest = trimmed(text);
   if (!rest.empty() && rest.front() == '+') rest.remove_prefix(1);
@@ -174,8 +179,7 @@ Quantity parse_quantity(std::string_view text, Dimension expected) {
   }
   for (const Unit& unit : units()) {
     if (unit.symbol != symbol || unit.dimension != expected) continue;
-    // 70 cm is 70 / 100, correctly rounded; 70 * 0.01 is not
-    const double si = unit.si < 1 ? number / (1 / unit.si) : number * unit.si;
+    const double si = in_si(number, unit.si);
     if (!std::isfinite(si)) return {{}, "is not a finite number"};
     return {si, {}};
   }

@@ -43,6 +43,8 @@ const std::vector<Unit>& units();
 
 /// Value of one `symbol` in SI; 1 for an empty symbol. The symbol must be one of `dimension`.
 double unit_value(std::string_view symbol, Dimension dimension);
+/// `number` times `unit`, as scenes are read: 190 gal are the same number wherever they are said.
+double in_si(double number, double unit);
 
 /// "m", "m/s^2"; empty for a plain number.
 std::string_view si_unit(Dimension dimension);

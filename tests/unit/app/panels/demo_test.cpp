@@ -5,6 +5,7 @@
 
 #include "app/panels/accuracy.h"
 #include "app/panels/teaching_words.h"
+#include "app/picture/words.h"
 #include "unit/app/live.h"
 
 namespace topple::app {
@@ -46,7 +47,8 @@ class DemoTest : public ::testing::TestWithParam<std::size_t> {
 };
 
 TEST_P(DemoTest, every_step_is_reached_by_its_event_and_can_be_gone_back_to) {
-  const auto scene = std::make_shared<const io::Scene>(io::load_scene("paper-a", {"run.duration=6"}));
+  const auto scene =
+      std::make_shared<const io::Scene>(io::load_scene("paper-a", {"run.duration=6", "title=\"Two\""}));
   start(scene);
   const Demo& demo = demos()[GetParam()];
   guide_.emplace(demo, *player_);
@@ -58,6 +60,8 @@ TEST_P(DemoTest, every_step_is_reached_by_its_event_and_can_be_gone_back_to) {
   const Shake& shake = player_->parameters().shakes.front();
   EXPECT_EQ(shake.frequency, demo.frequency);
   EXPECT_NEAR(shake.amplitude / k_gal, demo.amplitude, 1e-9);
+  const bool own = demo.frequency == 0.5 && demo.amplitude == 190;  // as the scene has it
+  EXPECT_EQ(title_in_words(*scene, player_->parameters()) == scene->title, own);
   guide_->previous();
   EXPECT_EQ(guide_->step(), at.size() - 2);
   EXPECT_NEAR(player_->time(), at[at.size() - 2], 0.011);  // a recorded instant
