@@ -188,6 +188,10 @@ std::vector<std::string> about_body(const FrameContext& now, std::size_t index) 
   for (const BodyTouch& touch : touches(now.model, now.row, index))
     lines.push_back(say(window_words::k_touched_by, touch.by, value_text(touch.force.norm()),
                         value_text(touch.force.z()), touch.place.z()));
+  for (std::size_t k = 0; k < now.model.anchors.size(); ++k)
+    if (const Anchor& anchor = now.model.anchors[k];
+        static_cast<std::size_t>(anchor.body) == index || anchor.other.body == static_cast<int>(index))
+      lines.push_back(anchor_in_words(now.model, now.row, k));
   return lines;
 }
 

@@ -5,10 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/picture/annotations.h"
 #include "app/picture/row.h"
+#include "app/picture/words.h"
 #include "app/support/terms.h"
 #include "solver/run/overturn.h"
 #include "unit/app/live.h"
@@ -195,6 +197,9 @@ TEST(Subject, an_anchor_has_its_strength_and_the_greatest_force_between_rows_too
               fmt::format("strength 1.5e+03 N, greatest force {:.3g} N, {} of its strength", peak,
                           percent_of(peak, 1500)));
   }
+  const std::vector<std::string> body = about(now, k_body);
+  for (std::size_t k = 0; k < 2; ++k)
+    EXPECT_NE(std::ranges::find(body, anchor_in_words(scene->setup.model, row, k)), body.end());
 }
 
 TEST(Subject, names_are_found_and_others_refused_with_what_there_is) {
