@@ -88,7 +88,7 @@ Setup alone(const Setup& scene, int index, bool walls) {
   Setup setup{
       .model = {}, .parameters = scene.parameters, .starts = {BodyStart{}}, .run = scene.run, .probes = {}};
   setup.parameters.shakes.clear();
-  setup.parameters.models = {BodyModel::frame};  // trials push its nodes
+  setup.parameters.models = {BodyModel::frame};  // trials push its nodes; a block stays rigid
   setup.run.settle = true;
   setup.run.stop_when = StopWhen::never;
   Body body = from.bodies[index];

@@ -29,25 +29,20 @@ struct Entry {
   std::function<ContactTrial()> trial;
 };
 
-/// Why there are no trials of a body; empty: there are.
-std::string why_no_trials(const Model& model, int body) {
-  if (model.bodies[body].solid) return "is a block; trials push the nodes of a frame";
-  return why_not_standing(model, body);
-}
-
 std::vector<BodyGroup> groups_of(const Setup& scene) {
   std::vector<BodyGroup> groups;
   for (int b = 0; b < static_cast<int>(scene.model.bodies.size()); ++b) {
     const std::string& name = scene.model.bodies[b].name;
     const auto like = std::find_if(groups.begin(), groups.end(), [&](const BodyGroup& group) {
-      return group.obstacle == why_no_trials(scene.model, b) && alike(scene.model, group.bodies.front(), b);
+      return group.obstacle == why_not_standing(scene.model, b) &&
+             alike(scene.model, group.bodies.front(), b);
     });
     if (like != groups.end()) {
       like->names += ", " + name;
       like->bodies.push_back(b);
       continue;
     }
-    BodyGroup group{.names = name, .bodies = {b}, .obstacle = why_no_trials(scene.model, b)};
+    BodyGroup group{.names = name, .bodies = {b}, .obstacle = why_not_standing(scene.model, b)};
     if (group.obstacle.empty()) {
       const Parameters& parameters = scene.parameters;
       group.theory = standing(scene.model, parameters, b);
@@ -259,8 +254,8 @@ std::string why_not_studied(const Setup& setup) {
   const Vec3& g = setup.parameters.gravity;
   if (!(g.z() < 0) || g.head<2>().norm() > 0) return "has no gravity that points down; bodies would not rest";
   for (int b = 0; b < static_cast<int>(setup.model.bodies.size()); ++b)
-    if (why_no_trials(setup.model, b).empty()) return "";
-  return "has no cabinet or frame that stands freely on its floor";
+    if (why_not_standing(setup.model, b).empty()) return "";
+  return "has no body that stands freely on its floor";
 }
 
 PenaltyStudy study_penalty(const std::string& name, const std::string& title, const Setup& scene,
