@@ -67,6 +67,8 @@ std::string loss_in_words(const ordered_json& step) {
   std::string out =
       pivots > 0 ? fmt::format(", unstable in {} direction{}", pivots, pivots > 1 ? "s" : "") : "";
   out += std::string(": ") + loss.words;
+  if (loss.loss == Stability::Loss::mechanism && !step["converged"].get<bool>())
+    out += ", or its path is nearly flat";
   if (const ordered_json& mode = step["mode"]; !mode.is_null()) {
     const ordered_json within = mode.value("within", ordered_json());
     const std::string place = within.is_null() ? fmt::format("node {}", mode["node"].get<int>())

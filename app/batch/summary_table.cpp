@@ -63,7 +63,7 @@ std::string static_head(const ordered_json& s) {
     out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
                        step["converged"].get<bool>() ? "converged"
                        : s["status"] == "stopped"    ? "not stable, the path ends"
-                                                     : "no equilibrium",
+                                                     : "no equilibrium near the last one",
                        loss_in_words(step));
   const auto stable = [](const ordered_json& step) { return step["stable"] == true; };
   if (!s["static"].empty() && std::ranges::all_of(s["static"], stable))
@@ -90,14 +90,15 @@ std::string own_frictions(const ordered_json& s) {
 std::string integrators(const ordered_json& s) {
   std::set<ModelLevel> levels;
   bool has_impulses = false;
+  const auto take = [&](const ordered_json& of) {
+    const ModelLevel level = level_called(of["model"].get<std::string>()).kind;
+    levels.insert(level);
+    has_impulses = has_impulses || (level == ModelLevel::rigid &&
+                                    of["integrator"] == row_of(k_level_integrators, level).impulses);
+  };
   for (const auto& b : s["bodies"]) {
-    levels.insert(level_called(b["model"].get<std::string>()).kind);
-    for (const auto& change : b["models"]) {
-      const ModelLevel level = level_called(change["model"].get<std::string>()).kind;
-      levels.insert(level);
-      has_impulses = has_impulses || (level == ModelLevel::rigid &&
-                                      change["integrator"] == row_of(k_level_integrators, level).impulses);
-    }
+    take(b);
+    for (const auto& change : b["models"]) take(change);
   }
   if (levels.contains(ModelLevel::rigid))
     levels.erase(ModelLevel::elastic);  // which is moved by a part of that

@@ -88,7 +88,7 @@ std::string ways_in_words(const ordered_json& ways, double person) {
     } else {
       out += fmt::format("no way to {} for a person of {:g} m", way["door"].get<std::string>(), person);
       if (way["widest_m"].get<double>() > 0)
-        out += fmt::format(", {:.2f} m left", way["widest_m"].get<double>());
+        out += fmt::format(", {:.3f} m left", way["widest_m"].get<double>());
       out +=
           way["blocked_by"].empty() ? ": the door is narrower" : ", blocked by " + joined(way["blocked_by"]);
     }

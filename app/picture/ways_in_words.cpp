@@ -23,7 +23,7 @@ std::string line_of(const Setup& setup, const RoomPlan& plan, std::size_t p, con
   const std::string& place = room.places[p].name;
   if (way.door < 0) return say(k_way_no_door, place);
   const std::string& door = room.doors[static_cast<std::size_t>(way.door)].name;
-  const std::string width = fmt::format("{:.2f}", way.widest);
+  const std::string width = fmt::format("{:.{}f}", way.widest, way.open ? 2 : 3);
   if (way.open) {
     const auto line = shortest_way(room, plan, static_cast<int>(p), way.door);
     return say(k_way_open, place, door, width, line ? fmt::format("{:.1f}", line->length) : "-");

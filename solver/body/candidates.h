@@ -1,22 +1,44 @@
-// Candidate pairs: elements of different bodies that may come to touch. They are searched for with a margin,
-// and again when that is used up.
+// Candidate pairs: parts of different bodies that may come to touch. They are searched for with a margin, and
+// again when it is used up: when surfaces of two bodies may have come closer by that much.
 #pragma once
+
+#include <vector>
 
 #include "solver/contact/proximity.h"
 #include "solver/model/model.h"
+#include "solver/reduced/rigid_motion.h"
 #include "solver/state/state.h"
 
 namespace topple {
 
-/// Most that a node is likely to move within h, s: h |v| + h^2/2 |a|, m, with its present v and a.
-double likely_travel(const Model& model, const State& state, double h);
+/// How much closer surfaces of two bodies come, where they do not stay `margin` apart, m; keeps its memory
+/// from one step to the next.
+class Approach {
+ public:
+  /// Most of it that is likely within h, s, as nodes and bodies move and are accelerated at `state`. The
+  /// margin is State::candidate_margin.
+  double likely(const Model& model, const State& state, double h);
+  /// A bound of it from one state to the other, of rigid and elastic bodies without deformation.
+  double greatest(const Model& model, const State& from, const State& to, double margin);
 
-/// Greatest displacement of a node from one state to another, m. Of rigid and elastic bodies an upper bound
-/// by their rigid motion, without deformation.
-double greatest_travel(const Model& model, const State& from, const State& to);
+ private:
+  // A body that moves as a rigid one and by `more` besides, from where its nodes are in `box`.
+  struct Motion {
+    RigidMotion rigid;
+    double more = 0;  // m
+    Eigen::AlignedBox3d box;
+    double half_width, way = 0;  // m; bound of it all
 
-/// Searches again unless State::candidate_margin is above twice `travel`, m: by that much two surfaces come
-/// closer when no node moves further than `travel`.
-void update_candidates(const Model& model, NearSearch& search, State& state, double travel);
+    Motion(const Model& model, const State& state, int index);  // still, where it is at `state`
+    double first() const { return box.min().x() - half_width - way; }
+    double last() const { return box.max().x() + half_width + way; }
+  };
+  double greatest(double margin);
+
+  std::vector<Motion> motions_;
+};
+
+/// Searches again unless State::candidate_margin is above `approach`, m.
+void update_candidates(const Model& model, NearSearch& search, State& state, double approach);
 
 }  // namespace topple

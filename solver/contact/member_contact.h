@@ -45,10 +45,11 @@ struct MemberPair {
   std::array<int, 2> count{1, 1};  ///< elements of a and b, from the first on, that are taken as one
   double L;                        ///< m
   double mass;                     ///< kg, for ContactInput::mass: reduced mass of the two bodies' shares
-  PairVector start;                ///< m, positions of the nodes where the step began: they tell the side
-  std::array<Vec3, 5> stick;       ///< m, per place, where the step began
   double gap = 0;                  ///< m, between the surfaces at `start`, where it is known; 0: not
   double ahead = 0;                ///< m, by which it may be open to be found (MemberContacts::ahead)
+  double way = 0;                  ///< m, by which its parts came nearer at most, for find_merged_contacts
+  PairVector start;                ///< m, positions of the nodes where the step began: they tell the side
+  std::array<Vec3, 5> stick;       ///< m, per place, where the step began
 
   int nodes() const { return panel != nullptr ? 6 : 4; }
 };
@@ -119,6 +120,7 @@ struct PairPlace {
   double weight, s, t;
   double approach2;  ///< m^2, bound of the square by which it has come nearer since the start
   double mass;       ///< kg, see ContactInput::mass; of several that with which they are damped as together
+  double root = 0;   ///< kg^(1/2), of several: sum of the roots of weight and mass
   int same = -1;     ///< see MemberTouch
   int other = 0;     ///< of a place at a node the node or ~element that it is nearest to
   int before = -1;   ///< the place at the same node that was found before it; -1: none
@@ -154,17 +156,24 @@ void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pai
                           std::span<const Vec3> start, MemberContacts& found);
 /// The same of some of the pairs, in ascending order. Pairs that touch at the same two places, as those of
 /// the members that meet in two corners do, have one touch with the sum of their weights: of rigid bodies it
-/// moves as they do. All of `which` are looked at, and of pairs of elements `start` tells the side.
-/// with_forces false: MemberTouch::out may be missing.
+/// moves as they do. All of `which` are looked at; `start`, since when MemberPair::way counts, tells the
+/// side. with_forces false: MemberTouch::out may be missing.
 void find_merged_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const int> which, std::span<const Vec3> position,
                           std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
                           PairPlaces& places, MemberContacts& found);
 
-/// What touches the panel of pair number `index`, added to `found`.
-void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, int index,
+/// Pairs that are looked at, in order: those in `which`, or, where it is null, the first.
+struct PairList {
+  const int* which;
+  int count;
+  int operator[](int k) const { return which != nullptr ? which[k] : k; }
+};
+
+/// What touches panels of the pairs in `list`, added to `found`. merged: as by find_merged_contacts.
+void find_panel_touches(const ContactLaw& law, std::span<const MemberPair> pairs, PairList list,
                         std::span<const Vec3> position, std::span<const Vec3> velocity,
-                        std::span<const Vec3> start, bool with_forces, MemberContacts& found);
+                        std::span<const Vec3> start, bool with_forces, bool merged, MemberContacts& found);
 
 /// Adds the forces on the nodes.
 void add_forces(const MemberContacts& contacts, std::span<const MemberPair> pairs, std::span<Vec3> force);

@@ -66,19 +66,21 @@ class TouchFinder {
     const MemberPair& pair = pairs_[i];
     double approach2 = 0;
     if (merged_ == nullptr) {
-      approach2 = greatest_approach2(pair, [&](int k) { return pair.start[k]; });
+      approach2 = greatest_approach2(pair);
       if (is_beyond(pair, approach2)) return;
     }
-    pairs_ahead_.push_back({i, 0, 0, 0, 0, approach2, pair.mass});
-    if (pairs_ahead_.full()) look();
+    ahead_[ahead_count_] = i;
+    approach2_[ahead_count_++] = approach2;
+    if (ahead_count_ == 4) look();
   }
   /// After the last one.
   void end() {
     look();
     if (merged_ != nullptr)
       for (PairPlace& place : merged_->all) {
-        const MemberPair& pair = pairs_[place.pair];
-        place.approach2 = greatest_approach2(pair, [&](int k) { return start_[pair.node[k]]; });
+        const double way = pairs_[place.pair].way;
+        place.approach2 = way * way;
+        if (place.root > 0) place.mass = place.root * place.root / place.weight;
         evaluate(place);
       }
     touch();
@@ -102,38 +104,37 @@ class TouchFinder {
     unsigned lanes() const { return (1u << count) - 1; }
   };
 
-  double reach_of(const PairPlace& place) const { return pairs_[place.pair].L + pairs_[place.pair].ahead; }
-
-  // Bound of the square by which they have come nearer since the start, m^2. start: of a node.
-  template <class Start>
-  double greatest_approach2(const MemberPair& pair, Start start) const {
-    const auto moved = [&](int k) { return (position_[pair.node[k]] - start(k)).squaredNorm(); };
+  // Bound of the square by which they have come nearer since the start, m^2.
+  double greatest_approach2(const MemberPair& pair) const {
+    const auto moved = [&](int k) { return (position_[pair.node[k]] - pair.start[k]).squaredNorm(); };
     return 2 * (std::max(moved(0), moved(1)) + std::max(moved(2), moved(3)));
   }
 
-  Nodes nodes(const FourPlaces& places) const {
+  // pair: per lane
+  template <class F>
+  Nodes nodes(F pair) const {
     Nodes out;
     for (int k = 0; k < 4; ++k)
-      for (int end = 0; end < 4; ++end)
-        out[end][k] = pairs_[places.at[k < places.count ? k : 0].pair].node[end];
+      for (int end = 0; end < 4; ++end) out[end][k] = pairs_[pair(k)].node[end];
     return out;
   }
 
   // Where the pairs ahead may touch.
   void look() {
-    FourPlaces& ahead = pairs_ahead_;
-    if (ahead.count == 0) return;
-    const Nodes n = nodes(ahead);
+    if (ahead_count_ == 0) return;
+    for (int k = ahead_count_; k < 4; ++k) ahead_[k] = ahead_[0];
+    const Nodes n = nodes([&](int k) { return ahead_[k]; });
     const Vec3* const x = position_.data();
     const Points a0 = gather(x, n[0]), b0 = gather(x, n[2]);
     const Points u = gather(x, n[1]) - a0, v = gather(x, n[3]) - b0, r = a0 - b0;
-    const Four reach = ahead.each([&](const PairPlace& of) { return reach_of(of); });
+    Four reach;
+    for (int k = 0; k < 4; ++k) reach.set(k, pairs_[ahead_[k]].L + pairs_[ahead_[k]].ahead);
     const auto is_near = [&](Four s, Four t) {
       const Points between = r + s * u - t * v;
       return bits(dot(between, between) < reach * reach);
     };
     const auto [s, t] = nearest_places(u, v, r);
-    const unsigned near = is_near(s, t) & ahead.lanes();
+    const unsigned near = is_near(s, t) & ((1u << ahead_count_) - 1);
     if (near != 0) {
       const Points across = cross(u, v);
       const Four uu = dot(u, u), vv = dot(v, v);
@@ -151,10 +152,10 @@ class TouchFinder {
             own_s = within_segment(dot(own_t * v - r, u) / uu);
           near_at[place] = is_near(own_s, own_t) & near;
         }
-      for (int k = 0; k < ahead.count; ++k) {
+      for (int k = 0; k < ahead_count_; ++k) {
         if (!(near >> k & 1)) continue;
         const double kappa = kappa_of(sine[k]), share = law_.member_share;
-        PairPlace& at = ahead.at[k];
+        PairPlace at{ahead_[k], 0, 0, 0, 0, approach2_[k], pairs_[ahead_[k]].mass};
         for (int place = kappa > 0 ? 0 : 1; place < (kappa < 1 ? 5 : 1); ++place) {
           if (!(near_at[place] >> k & 1)) continue;
           at.place = place;
@@ -166,7 +167,7 @@ class TouchFinder {
         if (kappa > 0 && kappa < 1 && stores_energy_) add_blend(at.pair, sine[k]);
       }
     }
-    ahead.count = 0;
+    ahead_count_ = 0;
   }
 
   static double kappa_of(double sine) { return sine < k_aligned ? 0 : sine * sine * (3 - 2 * sine); }
@@ -194,6 +195,9 @@ class TouchFinder {
     if (places_.full()) touch();
   }
 
+  // Of stick springs the damping adds up, which goes with this.
+  static double root_of(const PairPlace& place) { return std::sqrt(place.weight * place.mass); }
+
   // Whether another pair has that place already; else it is known at its node, if it is at one.
   bool merge(PairPlace& place) {
     const MemberPair& pair = pairs_[place.pair];
@@ -212,10 +216,9 @@ class TouchFinder {
       if (there.other != place.other || pairs_[there.pair].L != pair.L) continue;
       found_.same.push_back({place.pair, place.place, place.weight, there.same});
       there.same = static_cast<int>(found_.same.size()) - 1;
-      // of stick springs the damping adds up, which goes with the root of weight and mass
-      const double root = std::sqrt(there.weight * there.mass) + std::sqrt(place.weight * place.mass);
+      if (there.root == 0) there.root = root_of(there);
+      there.root += root_of(place);
       there.weight += place.weight;
-      there.mass = root * root / there.weight;
       return true;
     }
     place.before = std::exchange(newest, static_cast<int>(all.size()));
@@ -226,7 +229,7 @@ class TouchFinder {
   void touch() {
     FourPlaces& places = places_;
     if (places.count == 0) return;
-    const Nodes n = nodes(places);
+    const Nodes n = nodes([&](int k) { return places.at[k < places.count ? k : 0].pair; });
     const Vec3* const x = position_.data();
     const Points a0 = gather(x, n[0]), a1 = gather(x, n[1]), b0 = gather(x, n[2]), b1 = gather(x, n[3]);
     const Points u = a1 - a0, v = b1 - b0, r = a0 - b0;
@@ -387,24 +390,22 @@ class TouchFinder {
   const std::span<const Vec3> position_, velocity_, start_;
   PairPlaces* const merged_;
   MemberContacts& found_;
-  FourPlaces pairs_ahead_, places_;
+  std::array<int, 4> ahead_;  // pairs that are looked at next
+  std::array<double, 4> approach2_;
+  int ahead_count_ = 0;
+  FourPlaces places_;
 };
 
-// Of the pairs index(0), index(1), ...
-template <class Index>
-void find_contacts_of(std::size_t count, Index index, const ContactLaw& law,
-                      std::span<const MemberPair> pairs, std::span<const Vec3> position,
-                      std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
-                      PairPlaces* merged, MemberContacts& found) {
+void find_contacts_of(PairList list, const ContactLaw& law, std::span<const MemberPair> pairs,
+                      std::span<const Vec3> position, std::span<const Vec3> velocity,
+                      std::span<const Vec3> start, bool with_forces, PairPlaces* merged,
+                      MemberContacts& found) {
   found.clear();
   TouchFinder finder(law, pairs, position, velocity, start, with_forces, merged, found);
-  const int end = static_cast<int>(count);
-  for (int k = 0; k < end; ++k)
-    if (pairs[index(k)].panel == nullptr) finder.look_at(index(k));
+  for (int k = 0; k < list.count; ++k)
+    if (pairs[list[k]].panel == nullptr) finder.look_at(list[k]);
   finder.end();
-  for (int k = 0; k < end; ++k)
-    if (pairs[index(k)].panel != nullptr)
-      find_panel_touches(law, pairs, index(k), position, velocity, start, with_forces, found);
+  find_panel_touches(law, pairs, list, position, velocity, start, with_forces, merged != nullptr, found);
 }
 
 }  // namespace
@@ -412,17 +413,16 @@ void find_contacts_of(std::size_t count, Index index, const ContactLaw& law,
 void find_member_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const Vec3> position, std::span<const Vec3> velocity,
                           std::span<const Vec3> start, MemberContacts& found) {
-  const auto all = [](int k) { return k; };
-  find_contacts_of(pairs.size(), all, law, pairs, position, velocity, start, true, nullptr, found);
+  find_contacts_of({nullptr, static_cast<int>(pairs.size())}, law, pairs, position, velocity, start, true,
+                   nullptr, found);
 }
 
 void find_merged_contacts(const ContactLaw& law, std::span<const MemberPair> pairs,
                           std::span<const int> which, std::span<const Vec3> position,
                           std::span<const Vec3> velocity, std::span<const Vec3> start, bool with_forces,
                           PairPlaces& places, MemberContacts& found) {
-  find_contacts_of(
-      which.size(), [&](int k) { return which[k]; }, law, pairs, position, velocity, start, with_forces,
-      &places, found);
+  find_contacts_of({which.data(), static_cast<int>(which.size())}, law, pairs, position, velocity, start,
+                   with_forces, &places, found);
 }
 
 }  // namespace topple

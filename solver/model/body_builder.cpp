@@ -225,9 +225,15 @@ void BodyBuilder::close() {
     const Mat3 arm = skew(model_.node_position[i] - b.centre_of_gravity);
     b.inertia += model_.node_inertia[i] - model_.node_mass[i] * arm * arm;
   }
-  b.reach = 0;
-  for (int i = b.first_node; i < b.first_node + b.node_count; ++i)
-    b.reach = std::max(b.reach, (model_.node_position[i] - b.centre_of_gravity).norm());
+  b.reach = b.width = 0;
+  b.box.setEmpty();
+  for (int i = b.first_node; i < b.first_node + b.node_count; ++i) {
+    const Vec3 arm = model_.node_position[i] - b.centre_of_gravity;
+    b.reach = std::max(b.reach, arm.norm());
+    b.box.extend(arm);
+  }
+  for (int m = b.first_member; m < b.first_member + b.member_count; ++m)
+    b.width = std::max(b.width, model_.sections[model_.members[m].section].width);
   b.base_centre = b.centre_of_gravity;
   if (b.contact_point_count == 0) return;
 

@@ -48,7 +48,8 @@ class BodyBuilder {
   /// A sheet between four nodes in order around it, at which members end. Throws BuildError: it is not flat
   /// (k_flat), or no members lie along a side. Members are added before it.
   void add_panel(const std::array<int, 4>& nodes);
-  /// Fills mass, centre of gravity, inertia, reach, base (the lowest contact points) and support polygon.
+  /// Fills mass, centre of gravity, inertia, reach, box, width, base (the lowest contact points) and support
+  /// polygon.
   void close();
 
   Body& body() { return model_.bodies[body_]; }

@@ -88,10 +88,12 @@ struct Body {
   int first_member, member_count;
   int first_contact_point, contact_point_count;
   int first_panel, panel_count;
-  double mass;                        ///< kg
-  Vec3 centre_of_gravity;             ///< m, world, reference pose
-  double reach = 0;                   ///< m, greatest distance of a node from the centre of gravity
-  Mat3 inertia;                       ///< kg m^2 about the centre of gravity, world axes, reference pose
+  double mass;              ///< kg
+  Vec3 centre_of_gravity;   ///< m, world, reference pose
+  double reach = 0;         ///< m, greatest distance of a node from the centre of gravity
+  Eigen::AlignedBox3d box;  ///< m, of its nodes, from the centre of gravity, world axes, reference pose
+  double width = 0;         ///< m, greatest contact width of its members
+  Mat3 inertia;             ///< kg m^2 about the centre of gravity, world axes, reference pose
   std::vector<Vec3> support_polygon;  ///< convex hull of the base's contact points, counter-clockwise seen
                                       ///< from above, world, reference pose; empty when it has no base
   std::vector<int> base_points;       ///< contact points (global index) on the base

@@ -10,13 +10,14 @@
 
 #include "solver/math/disjoint_sets.h"
 #include "solver/math/ranges.h"
+#include "solver/reduced/rigid_motion.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
 namespace {
 
 constexpr double k_least_tolerance = 1e-3;  // below it TR-BDF2 is cheaper
-constexpr double k_step = 6.3;              // over the tolerance, of sqrt(reach/g)
+constexpr double k_step = 7.5;              // over the tolerance, of sqrt(reach/g)
 constexpr double k_most_growth = 6;         // of that step, for bodies at rest
 constexpr double k_slow = 0.05;             // of sqrt(g reach), speed below which steps grow
 constexpr double k_bounce_speed =
@@ -57,9 +58,10 @@ RigidIsland::RigidIsland(const std::vector<ModelBody>& bodies, MemberCoupling& c
     };
     auto both = ranges::find_if(body_pairs_, same);
     if (both == body_pairs_.end()) {
-      body_pairs_.push_back({first, second, {}, 0, 0, 0, 0, 0, {}});
+      body_pairs_.push_back({.first = first, .second = second, .pairs = {}, .near = {}});
       both = body_pairs_.end() - 1;
     }
+    both->least_L = std::min(both->least_L, pair.L);
     both->pairs.push_back(static_cast<int>(body_pair_of_.size()));
     body_pair_of_.push_back(static_cast<int>(both - body_pairs_.begin()));
   }
@@ -117,21 +119,13 @@ double RigidIsland::coming(const BodyPair& both, const State& state, double h) c
 
 // The same of the way from here_.
 double RigidIsland::came(const BodyPair& both, const std::vector<Known>& there) const {
-  const int last = both.second < 0 ? both.first : both.second;
-  const Vec3 at = here_[last].position;
-  Vec3 shift = Vec3::Zero();
-  Mat3 turn = Mat3::Zero();
-  for (const int b : {both.first, both.second}) {
-    Mat3 own = Mat3::Identity();
-    Vec3 way = Vec3::Zero();
-    if (b >= 0) {
-      own = (there[b].rotation * here_[b].rotation.conjugate()).toRotationMatrix();
-      way = there[b].position + own * (at - here_[b].position) - at;
-    }
-    shift = way - shift;
-    turn = own - turn;
-  }
-  return shift.norm() + (bodies_[last].body->reach() + k_most_gap) * turn.norm();
+  const auto motion = [&](int b) {
+    const Known &from = here_[b], &to = there[b];
+    return RigidMotion{from.position, bodies_[b].body->reach(), to.position - from.position,
+                       to.rotation * from.rotation.conjugate()};
+  };
+  if (both.second < 0) return motion(both.first).way();
+  return approach(motion(both.first), motion(both.second));
 }
 
 // Bodies are there, and their stick springs.
@@ -170,8 +164,8 @@ void RigidIsland::take_gaps(std::span<const int> which) {
   }
 }
 
-// What touches where the bodies are; with h > 0 what may within h, s, too, and without forces. Stick springs
-// are those at start_.
+// What touches where the bodies are; with h > 0 what may within h, s, too, and without forces: there they
+// came from start_. Stick springs are those at start_.
 void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
   const std::span<MemberPair> pairs = coupling_.pairs();
   chosen_.assign((pairs.size() + 63) / 64, 0);
@@ -185,12 +179,8 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
         both.least = std::min(both.least, open_until_[p]);
         continue;
       }
-      MemberPair& pair = pairs[p];
-      pair.ahead = both.ahead;
-      if (pair.panel != nullptr) {
-        pair.gap = 0;
-        pair.start = gather(pair, start_);
-      }
+      pairs[p].ahead = both.ahead;
+      pairs[p].way = h > 0 ? both.way : 0;
       chosen_[p / 64] |= std::uint64_t{1} << p % 64;
     }
   }
@@ -200,11 +190,11 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
       which_.push_back(static_cast<int>(64 * word) + std::countr_zero(left));
   find_merged_contacts(law, pairs, which_, coupling_.position(), coupling_.velocity(), start_, h == 0,
                        places_, now_);
-  found_.assign(pairs.size(), false);
+  found_.assign(pairs.size(), 0);
   for (const auto* list : {&now_.touches, &now_.ahead})
     for (const MemberTouch& touch : *list) {
       body_pairs_[body_pair_of_[touch.pair]].near.push_back(&touch);
-      now_.each_place(touch, [&](int pair, int) { found_[pair] = true; });
+      now_.each_place(touch, [&](int pair, int place) { found_[pair] |= 1u << place; });
     }
   find_bounds();
 }
@@ -212,18 +202,22 @@ void RigidIsland::look(const ContactLaw& law, const State& state, double h) {
 // How far bodies may come nearer until pairs may touch, of those looked at.
 void RigidIsland::find_bounds() {
   stale_.clear();
-  for (const int p : which_) {
-    const BodyPair& both = body_pairs_[body_pair_of_[p]];
-    if (found_[p])
-      open_until_[p] = seen_[p] = both.closed;
-    else if (both.closed > seen_[p] + k_stale)
-      stale_.push_back(p);
-  }
-  take_gaps(stale_);
-  for (const int p : which_) {
+  const auto take_bound = [this](int p) {
     double& least = body_pairs_[body_pair_of_[p]].least;
     least = std::min(least, open_until_[p]);
+  };
+  for (const int p : which_) {
+    const BodyPair& both = body_pairs_[body_pair_of_[p]];
+    if (found_[p]) {
+      open_until_[p] = seen_[p] = both.closed;
+    } else if (both.closed > seen_[p] + k_stale) {
+      stale_.push_back(p);
+      continue;
+    }
+    take_bound(p);
   }
+  take_gaps(stale_);
+  for (const int p : stale_) take_bound(p);
 }
 
 RigidIsland::TouchingBodies& RigidIsland::together(const std::vector<int>& bodies) {
@@ -403,11 +397,12 @@ bool RigidIsland::missed() const {
 
 // Whether a pair went through each other in the newest move.
 bool RigidIsland::passed() const {
-  for (const int p : which_) {
-    const MemberPair& pair = coupling_.pairs()[p];
-    if (body_pairs_[body_pair_of_[p]].way > pair.L / 2 && moved_unseen(pair, from_, coupling_.position()))
-      return true;
-  }
+  const auto is_fast = [](const BodyPair& both) { return both.way > both.least_L / 2; };
+  if (ranges::any_of(body_pairs_, is_fast))
+    for (const int p : which_)
+      if (is_fast(body_pairs_[body_pair_of_[p]]) &&
+          moved_unseen(coupling_.pairs()[p], from_, coupling_.position()))
+        return true;
   for (const MemberTouch& touch : now_.touches) {
     if (touch.input.depth < k_deep) continue;
     bool other_side = false;
@@ -546,7 +541,7 @@ void RigidIsland::finish(const StepSpan& span, State& next, MemberSticks& sticks
     touch.out.stick = touch.input.stick;
     now_.each_place(touch, [&](int pair, int place) { pairs[pair].stick[place] = touch.input.stick; });
   }
-  sticks.store(which_, pairs, next);
+  sticks.store(which_, found_, pairs, next);
   law_ = span.end.law;
 }
 

@@ -3,11 +3,12 @@
 // the other half,
 //   x = x0 + h/2 u0 + h/2 u1,  R with its angular momentum kept (Lie midpoint),
 // and a look at the end tells what acts there. It is of second order while no contact opens, closes or slips.
-// Its length is 6.3 tolerance sqrt(reach/g), up to three times that where bodies are slow against what they
+// Its length is 7.5 tolerance sqrt(reach/g), up to six times that where bodies are slow against what they
 // touch; blows are resolved.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,6 +54,7 @@ class RigidIsland {
   struct BodyPair {
     int first, second;
     std::vector<int> pairs;
+    double least_L = std::numeric_limits<double>::infinity();  // m, of the pairs
     // Bounds of the way by which they have come nearer, m: so far, and in the newest step.
     double closed = 0, way = 0;
     double least = 0;                      // of `closed`, m: before it no pair touches
@@ -128,10 +130,11 @@ class RigidIsland {
   std::vector<ContactImpulses::Velocity> velocity_;  // per body
   std::vector<BodyVelocity> blends_;                 // per body, what MemberContacts::blends do: held
   ContactImpulses::Work work_;
-  bool bounces_ = false;                    // something struck
-  std::vector<int> place_;                  // per body, within its set
-  std::vector<int> stale_;                  // pairs whose gaps are to be found anew
-  std::vector<char> found_, found_before_;  // per pair: now_ lists it, last_ does
+  bool bounces_ = false;    // something struck
+  std::vector<int> place_;  // per body, within its set
+  std::vector<int> stale_;  // pairs whose gaps are to be found anew
+  // per pair: at which places now_ lists it, as bits; last_
+  std::vector<std::uint8_t> found_, found_before_;
 };
 
 }  // namespace topple

@@ -1,6 +1,7 @@
 // Stick springs between members from step to step, for those who advance some candidate pairs of a model.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,13 +18,17 @@ class MemberSticks {
   void load(const State& state, std::span<MemberPair> pairs) const;
   /// What touches leaves its springs; those of the other pairs in `pairs` become zero.
   void store(std::span<const MemberTouch> touches, std::span<const MemberPair> pairs, State& state);
-  /// Those of MemberPair::stick of the pairs `which`, in order; those of the others become zero.
-  void store(std::span<const int> which, std::span<const MemberPair> pairs, State& state);
+  /// Those of MemberPair::stick of the pairs `which`, in order, at `places`, bits per pair of `pairs`; the others
+  /// become zero.
+  void store(std::span<const int> which, std::span<const std::uint8_t> places,
+             std::span<const MemberPair> pairs, State& state);
   /// From take to give it works on a copy.
   void take(const State& state);
   void give(std::span<const MemberPair> pairs, State& state);
 
  private:
+  void replace(std::span<const MemberPair> pairs, std::vector<MemberStick>& all);
+
   std::vector<MemberStick> own_, new_, merged_;
   bool keeps_ = false;
 };

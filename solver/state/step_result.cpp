@@ -35,7 +35,7 @@ const char* loss_in_words(Stability::Loss loss) {
     case Loss::buckling:
       return " buckles there, sideways to its loads";
     case Loss::mechanism:
-      return " is a mechanism there; run.control with an arc follows a path that goes on or turns down";
+      return " is a mechanism there, or its path is nearly flat; run.control with an arc follows it on";
     case Loss::fracture:
       return " breaks there, and what is left does not carry the loads; run.control with an arc follows a "
              "path that goes on or turns down";

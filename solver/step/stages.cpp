@@ -57,10 +57,10 @@ StepInProgress::StepInProgress(const Model& model_, const Parameters& parameters
   w.reached.emplace(parameters, end(), start);
 }
 
-void find_candidates(const StepInProgress& s, double travel) {
+void find_candidates(const StepInProgress& s, double approach) {
   const InPhase phase(&s.w.profile, Phase::search);
   copy(s.from, s.w.next, s.w.moves_nodes(s.from));
-  update_candidates(s.model, s.w.search, s.w.next, travel);
+  update_candidates(s.model, s.w.search, s.w.next, approach);
 }
 
 void switch_models(const StepInProgress& s) {

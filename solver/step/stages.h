@@ -23,8 +23,9 @@ struct StepInProgress {
   double end() const { return from.time + h; }  ///< s
 };
 
-/// Copies `from` to `w.next` and finds all candidate pairs, for nodes that move by `travel`, m, at most.
-void find_candidates(const StepInProgress& step, double travel);
+/// Copies `from` to `w.next` and finds all candidate pairs, for surfaces that come closer by `approach`, m,
+/// at most.
+void find_candidates(const StepInProgress& step, double approach);
 
 /// Chooses what each body is computed as from here on (model_switch.h).
 void switch_models(const StepInProgress& step);

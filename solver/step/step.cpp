@@ -52,10 +52,10 @@ namespace {
 StepStatus try_step(const Model& model, const Parameters& parameters, const State& state, double h,
                     int halvings, Workspace::Impl& w) {
   const bool alone = model.bodies.size() < 2;
-  double travel = alone ? 0 : likely_travel(model, state, h);
+  double approach = alone ? 0 : w.approach.likely(model, state, h);
   for (int look = 0; look < k_most_looks; ++look) {
     StepInProgress s(model, parameters, state, h, halvings, w);
-    find_candidates(s, travel);
+    find_candidates(s, approach);
     switch_models(s);
     apply_events(s);
     StepStatus status = check_stability(s);
@@ -66,9 +66,9 @@ StepStatus try_step(const Model& model, const Parameters& parameters, const Stat
     }
     if (status.ok() && w.models.yielded(model, w.next, w.parts)) continue;
     if (!status.ok() || alone) return status;
-    travel = greatest_travel(model, state, w.next);
-    if (2 * travel < w.next.candidate_margin) {
-      w.next.candidate_margin -= 2 * travel;
+    approach = w.approach.greatest(model, state, w.next, w.next.candidate_margin);
+    if (approach < w.next.candidate_margin) {
+      w.next.candidate_margin -= approach;
       return status;
     }
   }

@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "solver/body/candidates.h"
 #include "solver/body/model_switch.h"
 #include "solver/body/parts.h"
-#include "solver/contact/proximity.h"
 #include "solver/step/workspace.h"
 
 namespace topple {
@@ -37,6 +37,7 @@ struct Workspace::Impl {
   Parts parts;
   ModelSwitch models;
   NearSearch search;
+  Approach approach;
   std::vector<PartScratch> scratches{1};        // per worker
   std::vector<PartOutcome> outcomes;            // per part, of the newest step
   std::optional<Parameters> parameters;         // seen last; for them hold:

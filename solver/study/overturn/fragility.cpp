@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "solver/math/types.h"
+#include "solver/study/common/spread.h"
 
 namespace topple::study {
 namespace {
@@ -71,7 +72,7 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
   if (levels.size() == 1) return fmt::format("there are runs at {:.4g} alone", least_hit);
   if (most_miss == least_hit) {
     const Level& level = *std::ranges::find(levels, least_hit, &Level::intensity);
-    const int above = level.runs - 2 * level.hits;  // where the median is: > 0 above this level
+    const Interval share = wilson(level.hits, level.runs);
     double before = 0, after = k_far;
     for (const Level& other : levels) {
       if (other.runs == 0) continue;
@@ -80,9 +81,9 @@ std::string why_none(const std::vector<Level>& levels, const std::string& verb) 
     }
     return fmt::format(
         "runs differ at {:.4g} alone ({} of {}): the median lies {}", least_hit, level.hits, level.runs,
-        above == 0  ? "near it"
-        : above > 0 ? (after < k_far ? fmt::format("between it and {:.4g}", after) : "beyond it")
-                    : (before > 0 ? fmt::format("between {:.4g} and it", before) : "below it"));
+        share.low <= 0.5 && 0.5 <= share.high ? "near it, above or below"
+        : share.high < 0.5 ? (after < k_far ? fmt::format("between it and {:.4g}", after) : "beyond it")
+                           : (before > 0 ? fmt::format("between {:.4g} and it", before) : "below it"));
   }
   if (most_hit <= least_miss) return "it does not become more frequent";
   return "";

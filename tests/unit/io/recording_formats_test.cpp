@@ -139,16 +139,17 @@ TEST_P(KeptRecordingTest, is_copied_with_its_arithmetic_or_says_from_which_forma
 
 INSTANTIATE_TEST_SUITE_P(
     Formats, KeptRecordingTest,
-    ::testing::Values(
-        Kept{"format-1", 1, k_system_arithmetic}, Kept{"format-2", 2, k_system_arithmetic},
-        Kept{"format-3", 3, k_system_arithmetic}, Kept{"format-4", 4, k_system_arithmetic},
-        Kept{"format-5", 5, k_system_arithmetic}, Kept{"format-6", 6, k_system_arithmetic},
-        Kept{"format-7", 7, k_system_arithmetic}, Kept{"format-7-topple-1", 7, "topple-1", true},
-        Kept{"format-7-topple-2", 7, "topple-2", true}, Kept{"format-8", 8, "topple-2", true},
-        Kept{"format-9", 9, "topple-3", true}, Kept{"format-10", 10, "topple-4", true},
-        Kept{"format-10-topple-5", 10, "topple-5", true}, Kept{"format-10-topple-6", 10, "topple-6", true},
-        Kept{"format-10-topple-7", 10, "topple-7", true}, Kept{"format-10-topple-8", 10, "topple-8", true},
-        Kept{"format-10-topple-9", 10, "topple-9", true}, Kept{"format-10-topple-10", 10, "topple-10", true}),
+    ::testing::Values(Kept{"format-1", 1, k_system_arithmetic}, Kept{"format-2", 2, k_system_arithmetic},
+                      Kept{"format-3", 3, k_system_arithmetic}, Kept{"format-4", 4, k_system_arithmetic},
+                      Kept{"format-5", 5, k_system_arithmetic}, Kept{"format-6", 6, k_system_arithmetic},
+                      Kept{"format-7", 7, k_system_arithmetic}, Kept{"format-7-topple-1", 7, "topple-1"},
+                      Kept{"format-7-topple-2", 7, "topple-2"}, Kept{"format-8", 8, "topple-2"},
+                      Kept{"format-9", 9, "topple-3"}, Kept{"format-10", 10, "topple-4"},
+                      Kept{"format-10-topple-5", 10, "topple-5"}, Kept{"format-10-topple-6", 10, "topple-6"},
+                      Kept{"format-10-topple-7", 10, "topple-7"}, Kept{"format-10-topple-8", 10, "topple-8"},
+                      Kept{"format-10-topple-9", 10, "topple-9"},
+                      Kept{"format-10-topple-10", 10, "topple-10"},
+                      Kept{"format-10-topple-11", 10, "topple-11", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');

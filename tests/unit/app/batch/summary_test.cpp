@@ -348,7 +348,7 @@ TEST(Summary, says_who_gets_out_before_and_after) {
   EXPECT_EQ(closed["ways"][0]["length_m"], nullptr);
   EXPECT_EQ(closed["ways"][0]["blocked_by"], (Json{"a", "b"}));
   EXPECT_NE(
-      summary_table(closed).find("place desk: no way to door for a person of 0.5 m, 0.49 m left, blocked "
+      summary_table(closed).find("place desk: no way to door for a person of 0.5 m, 0.490 m left, blocked "
                                  "by a, b, as before the shake\n"),
       std::string::npos)
       << summary_table(closed);

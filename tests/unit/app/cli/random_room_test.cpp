@@ -1,6 +1,7 @@
 // Random rooms of two to five cabinets, four seconds each, and built-in scenes, as the program chooses to
-// compute them against frames, and these against frames at half the step. TOPPLE_ROOM: the number of a room,
-// whose text comes first, or the name of a scene: this one alone. A line for each:
+// compute them against frames, and these against frames at half the step and, of who falls and when, against
+// those under 0.1 % more and less of the shake: what that changes no accuracy of 1 % decides. TOPPLE_ROOM:
+// the number of a room, whose text comes first, or the name of a scene: this one alone. A line for each:
 //   NAME: MODELS; error about E %, E % before it lands, E % of the frame; FALLS; balance B; SPEED
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -157,13 +158,28 @@ double time_difference(const Track& a, const Track& exact) {
 }
 
 void compare_with_frames(const std::string& name, const topple::Setup& setup) {
-  constexpr double k_same_time = 0.01;
+  constexpr double k_same_time = 0.01, k_times_off = 0.02;
+  constexpr double k_other_shake = 1e-3;  // a tenth of the accuracy that is asked for
   topple::Setup frame = setup;
   frame.parameters.models.assign(setup.model.bodies.size(), BodyModel::frame);
   topple::Setup finer = frame;
   finer.parameters.time_step /= 2;
   finer.parameters.tolerance /= 8;  // the error of a step goes with its third power
   const Track chosen = track(setup), frames = track(frame), exact = track(finer);
+  const auto agree = [&](const Track& others, double tolerance) {
+    return others.failure.empty() && others.fallen() == exact.fallen() &&
+           time_difference(others, exact) < tolerance;
+  };
+  bool certain = exact.failure.empty() && agree(frames, k_same_time);
+  for (const double factor : {1 - k_other_shake, 1 + k_other_shake}) {
+    if (!certain) break;
+    topple::Setup other = frame;
+    for (Shake& shake : other.parameters.shakes) {
+      shake.amplitude *= factor;
+      shake.scale *= factor;
+    }
+    certain = agree(track(other), k_times_off);
+  }
   std::set<std::string> models;
   double estimate = 0, pinch = 0;
   for (const BodyOutcome& body : chosen.bodies) {
@@ -174,8 +190,6 @@ void compare_with_frames(const std::string& name, const topple::Setup& setup) {
       estimate = std::max(estimate, change.error_estimate);
     }
   }
-  const bool certain = frames.failure.empty() && exact.failure.empty() && frames.fallen() == exact.fallen() &&
-                       time_difference(frames, exact) < k_same_time;
   const bool same = chosen.fallen() == exact.fallen();
   const double late = time_difference(chosen, exact);
   const std::string falls = !certain ? "frames do not agree on who falls"
@@ -193,7 +207,7 @@ void compare_with_frames(const std::string& name, const topple::Setup& setup) {
   EXPECT_LT(chosen.balance, 1e-3) << name;
   EXPECT_LT(pinch, 1) << name << ": a member went through another";
   EXPECT_TRUE(same || !certain) << name;
-  EXPECT_TRUE(!same || !certain || late < 0.02) << name;
+  EXPECT_TRUE(!same || !certain || late < k_times_off) << name;
 }
 
 TEST(RandomRoom, falls_as_its_frames_do) {
