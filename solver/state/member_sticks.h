@@ -18,8 +18,8 @@ class MemberSticks {
   void load(const State& state, std::span<MemberPair> pairs) const;
   /// What touches leaves its springs; those of the other pairs in `pairs` become zero.
   void store(std::span<const MemberTouch> touches, std::span<const MemberPair> pairs, State& state);
-  /// Those of MemberPair::stick of the pairs `which`, in order, at `places`, bits per pair of `pairs`; the others
-  /// become zero.
+  /// Those of MemberPair::stick of the pairs `which`, in order, at `places`, bits per pair of `pairs`; the
+  /// others become zero.
   void store(std::span<const int> which, std::span<const std::uint8_t> places,
              std::span<const MemberPair> pairs, State& state);
   /// From take to give it works on a copy.
