@@ -181,9 +181,11 @@ class Controls {
       return add(usual, path, table, label, window_words::k_bodies, si, component);
     };
     const Node* const size = entry.find("size");
+    int tall = -1;  // control of the height
     for (int k = 0; size != nullptr && size->items.size() == 3 && k < 3; ++k)
-      if (const auto metres = number_of(&size->items[k].value, io::Dimension::length))
-        add_here(k_of_size[k], *metres, k);
+      if (const auto metres = number_of(&size->items[k].value, io::Dimension::length);
+          metres && add_here(k_of_size[k], *metres, k) != nullptr && k == 2)
+        tall = static_cast<int>(found_.size()) - 1;
     const Node* const masses = entry.find("masses");
     std::optional<double> mass = number_of(entry.find("mass"), io::Dimension::mass);
     if (!mass && masses != nullptr)
@@ -193,9 +195,15 @@ class Controls {
     if (PageControl* const own = mass ? add_here(k_mass, *mass) : nullptr; own && masses != nullptr)
       own->least = std::clamp(k_least_members * mass_of(*masses), own->least, own->value);
     std::optional<double> height = number_of(entry.find("cg_height"), io::Dimension::length);
+    const bool is_named = height.has_value();
     if (!height && table == "cabinet" && body != bodies.end() && entry.find("pose") == nullptr)
       height = body->centre_of_gravity.z() - body->base_centre.z();
-    if (height) add_here(k_cg_height, *height);
+    if (PageControl* const found = height ? add_here(k_cg_height, *height) : nullptr;
+        found && !is_named && tall >= 0) {
+      found->follows = tall;
+      found->share = found->value / found_[static_cast<std::size_t>(tall)].value;
+      found->value = found->share * found_[static_cast<std::size_t>(tall)].value;
+    }
     if (const auto tilt = number_of(entry.find("tilt"), io::Dimension::angle)) add_here(k_tilt, *tilt);
     friction(table, entry, path, label);
     for (std::size_t i = first; i < found_.size() && body != bodies.end(); ++i)
@@ -224,7 +232,9 @@ class Controls {
     if (scene_.setup.model.planes.empty() || (!own && table != "frame")) return;
     const double value = own.value_or(scene_.setup.parameters.contact.friction);
     PageControl* const found = add(k_of_contact[0], path, table, label, window_words::k_bodies, value);
-    if (found && !own) found->follows = k_contact_friction;
+    if (found && !own)
+      found->follows =
+          static_cast<int>(ranges::find(found_, k_contact_friction, &PageControl::key) - found_.begin());
   }
 
   const io::Scene& scene_;
@@ -246,10 +256,10 @@ std::string written(const PageControl& control, double value) {
 /// The value that it has unless it is set.
 double unset(const std::vector<PageControl>& controls, const std::vector<double>& values,
              const PageControl& control) {
-  const auto followed =
-      static_cast<std::size_t>(ranges::find(controls, control.follows, &PageControl::key) - controls.begin());
-  return followed < std::min(controls.size(), values.size()) && std::isfinite(values[followed])
-             ? values[followed]
+  const auto followed = static_cast<std::size_t>(control.follows);
+  return control.follows >= 0 && followed < std::min(controls.size(), values.size()) &&
+                 std::isfinite(values[followed])
+             ? control.share * values[followed]
              : control.value;
 }
 

@@ -26,8 +26,8 @@ struct PageControl {
   bool logarithmic = false;
   int body = -1;       ///< piece of furniture that it belongs to; -1: to none alone
   int component = -1;  ///< of a list of numbers; -1: the value itself
-  /// Key of the control whose value this one has unless it is set; empty: none.
-  std::string follows = {};
+  int follows = -1;    ///< control of whose value this one has `share` unless it is set; -1: none
+  double share = 1;
   /// List of tables, SI, whose masses and inertias add up to `value` and change in proportion; null: the
   /// value itself.
   std::shared_ptr<const io::Node> list = {};

@@ -86,6 +86,7 @@ Json controls_json() {
                     {"value", number(one.value)},
                     {"logarithmic", one.logarithmic},
                     {"follows", one.follows},
+                    {"share", number(one.share)},
                     {"body", one.body}});
   }
   return list;

@@ -69,13 +69,13 @@ function buildControls() {
   });
 }
 
-// Controls that follow this one change with it as long as they have its value.
+// Controls that follow this one change with it as long as they have their share of its value.
 function setControl(i, value) {
   const before = page.values[i];
   page.values[i] = value;
   page.controls.forEach((control, j) => {
-    if (j !== i && !(control.follows === page.controls[i].key && page.values[j] === before)) return;
-    page.values[j] = value;
+    if (j !== i && !(control.follows === i && page.values[j] === control.share * before)) return;
+    if (j !== i) page.values[j] = control.share * value;
     page.updates[j](j === i);
   });
 }

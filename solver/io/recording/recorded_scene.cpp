@@ -36,7 +36,9 @@ Scene recorded_scene(const Recording& recording) {
       if (file.name == name) return file.bytes;
     throw InputError(name + ": is not in the recording");
   };
-  return parse_scene(text_for_today(recording), recording.scene_name(), {}, read);
+  Scene scene = parse_scene(text_for_today(recording), recording.scene_name(), {}, read);
+  scene.name = recording.scene_name();  // which may have a dot
+  return scene;
 }
 
 }  // namespace topple::io

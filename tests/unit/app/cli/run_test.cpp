@@ -228,6 +228,27 @@ TEST_F(RunTest, events_are_told_in_the_order_of_time) {
   EXPECT_LT(told.find("0.0200 s  free uplift"), told.find("0.0250 s  free impact")) << told;
 }
 
+TEST_F(RunTest, a_name_with_a_dot_is_kept_in_its_recording) {
+  write_bytes("alpha-0.001.toml", k_shaken);
+  ASSERT_EQ(topple({"run", "alpha-0.001.toml", "-o", "a.h5"}).code, 0);
+  EXPECT_EQ(info("a.h5")["scene"], "alpha-0.001");
+}
+
+// Also where rigid is asked for and no change of a level tells.
+TEST_F(RunTest, names_the_impulses_of_bodies_that_meet) {
+  const std::string three =
+      "[run]\nduration = 0.5\ntime_step = \"auto\"\nwant = [\"motion\"]\n"
+      "[floor]\nwidth = \"60 mm\"\n";
+  const auto block = [](const std::string& name, double x) {
+    return "[[block]]\nname = \"" + name +
+           "\"\nsize = [0.3, 0.6, 1.5]\nmass = 60\nmodel = \"rigid\"\nat = [" + std::to_string(x) + ", 0]\n";
+  };
+  write_bytes("row.toml", "topple = 1\n" + three + block("a", 0) + block("b", 0.31));
+  const Ended ended = topple({"run", "row.toml"});
+  EXPECT_NE(ended.out.find("TR-BDF2 on stiff contacts, impulses where bodies meet"), std::string::npos)
+      << ended.out;
+}
+
 TEST_F(RunTest, threads_change_no_state) {
   const std::string at = "size = [\"380 mm\"";
   std::string first = k_shaken, second = k_cabinet;

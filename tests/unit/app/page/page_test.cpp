@@ -80,7 +80,7 @@ TEST(PageControls, each_changes_the_scene_as_it_says) {
                  : one.value < one.most                ? one.value + 0.05 * (one.most - one.value)
                                                        : one.value - 0.05 * (one.value - one.least);
       for (std::size_t k = 0; k < controls.size(); ++k)
-        if (controls[k].follows == one.key) other[k] = other[i];
+        if (controls[k].follows == static_cast<int>(i)) other[k] = controls[k].share * other[i];
       const std::vector<std::string> sets = changes(controls, other);
       ASSERT_EQ(sets.size(), 1u) << name << " " << one.key;
       EXPECT_EQ(sets[0].rfind(one.key + "=", 0), 0u) << sets[0];
@@ -147,7 +147,7 @@ TEST(PageControls, friction_of_a_frame_is_that_of_all_contacts_until_it_is_set) 
     if (controls[i].key == "contact.friction") of_all = i;
     if (controls[i].key == "frame.table.friction") own = i;
   }
-  ASSERT_EQ(controls[own].follows, controls[of_all].key);
+  ASSERT_EQ(controls[own].follows, static_cast<int>(of_all));
   values[of_all] = values[own] = 0;
   EXPECT_EQ(changes(controls, values), std::vector<std::string>{"contact.friction=0"});
   values[of_all] = 0.4;
@@ -156,6 +156,29 @@ TEST(PageControls, friction_of_a_frame_is_that_of_all_contacts_until_it_is_set) 
   EXPECT_EQ(scene.setup.parameters.contact.friction, 0.4);
   EXPECT_NEAR(0.4 * body(scene, "table").grip, 0.3, 1e-12);
   EXPECT_EQ(body(scene, "cabinet").grip, 1);
+}
+
+TEST(PageControls, centre_of_gravity_of_a_cabinet_stays_in_the_middle_until_it_is_set) {
+  const std::string text =
+      "topple = 1\n[run]\nduration = 1\n[floor]\nwidth = \"60 mm\"\n[[cabinet]]\nname = \"wardrobe\"\n"
+      "size = [\"560 mm\", \"960 mm\", \"2260 mm\"]\nmass = \"90 kg\"\n";
+  const std::vector<PageControl> controls = page_controls(io::parse_scene(text, "wardrobe.toml"));
+  std::vector<double> values;
+  std::size_t height = 0, centre = 0;
+  for (std::size_t i = 0; i < controls.size(); ++i) {
+    values.push_back(controls[i].value);
+    if (controls[i].key == "cabinet.wardrobe.size" && controls[i].component == 2) height = i;
+    if (controls[i].key == "cabinet.wardrobe.cg_height") centre = i;
+  }
+  ASSERT_EQ(controls[centre].follows, static_cast<int>(height));
+  EXPECT_NEAR(controls[centre].value, 1130, 1e-9);
+  values[height] = 1450;
+  values[centre] = controls[centre].share * 1450;
+  EXPECT_NEAR(values[centre], 725, 1e-9);
+  const std::vector<std::string> sets = changes(controls, values);
+  ASSERT_EQ(sets.size(), 1u);
+  const io::Scene shorter = io::parse_scene(text, "wardrobe.toml", sets);
+  EXPECT_NEAR(body(shorter, "wardrobe").centre_of_gravity.z(), 0.725, 1e-9);
 }
 
 TEST(PageControls, a_piece_that_starts_tilted_can_start_otherwise) {
