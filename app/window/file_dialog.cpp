@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <string>
 #include <utility>
 
 #include "app/panels/shell_words.h"
@@ -129,12 +130,12 @@ void FileDialog::draw_entries(float height) {
   if (!question_.saves) set_text(name, "");
 }
 
-bool draw_path_field(char (&path)[4096], FileDialog& files, const FileQuestion& question) {
+bool draw_path_field(char (&path)[4096], FileDialog& files, const FileQuestion& question, int opened) {
   const std::string browse = say(ww::k_browse);
   const ImGuiStyle& style = ImGui::GetStyle();
   const float button = ImGui::CalcTextSize(browse.c_str()).x + 2 * style.FramePadding.x;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - button - style.ItemSpacing.x);
-  const bool changed = ImGui::InputText("##path", path, sizeof path);
+  const bool changed = ImGui::InputText(("##path" + std::to_string(opened)).c_str(), path, sizeof path);
   ImGui::SameLine();
   if (ImGui::Button(browse.c_str()))
     files.ask(question, [&path](const std::string& p) { set_text(path, p); });

@@ -46,7 +46,8 @@ class FileDialog {
   std::vector<std::string> entries_;
 };
 
-/// A field for a path with a button that chooses it. True when it was changed.
-bool draw_path_field(char (&path)[4096], FileDialog& files, const FileQuestion& question);
+/// A field for a path with a button that chooses it. True when it was changed. A field that is known already
+/// comes back without its text selected: `opened` counts how often.
+bool draw_path_field(char (&path)[4096], FileDialog& files, const FileQuestion& question, int opened = 0);
 
 }  // namespace topple::app

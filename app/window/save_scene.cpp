@@ -96,12 +96,10 @@ std::string SaveDialog::draw(const io::Scene& scene, const Parameters& now, cons
   ImGui::TextDisabled("%s", say(ww::k_save_scene_about).c_str());
   ImGui::PopTextWrapPos();
   if (std::exchange(appeared_, false)) ImGui::SetKeyboardFocusHere();
-  ImGui::PushID(opened_);  // a field that is known already comes back without its text selected
-  if (draw_path_field(path, files_, {true, say(ww::k_save_scene), path, {".toml"}})) {
+  if (draw_path_field(path, files_, {true, say(ww::k_save_scene), path, {".toml"}}, opened_)) {
     exists_.clear();
     refused_.clear();
   }
-  ImGui::PopID();
   if (exists_ != path) exists_.clear();
   if (!exists_.empty() || !refused_.empty()) {
     ImGui::PushTextWrapPos(0);

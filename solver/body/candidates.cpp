@@ -1,10 +1,10 @@
 #include "solver/body/candidates.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "solver/body/model_level.h"
 #include "solver/math/ranges.h"
-#include "solver/math/rotation.h"
 
 namespace topple {
 namespace {
@@ -13,43 +13,65 @@ constexpr double k_margin = 0.05;  // m, around surfaces: how far bodies come be
 
 }  // namespace
 
-Approach::Motion::Motion(const Model& model, const State& state, int index) {
-  const Body& body = model.bodies[index];
-  half_width = body.width / 2;
-  if (const BodyState& s = state.bodies[index]; s.level != ModelLevel::frame) {
-    const Mat3 r = s.rotation.toRotationMatrix();
-    const Vec3 middle = s.position + r * body.box.center(), half = r.cwiseAbs() * body.box.sizes() / 2;
-    box = {middle - half, middle + half};
-    rigid = {.centre = s.position, .reach = body.reach};
-    return;
+// All bodies still, where they are at `state`.
+void Approach::start(const Model& model, const State& state) {
+  const int count = static_cast<int>(model.bodies.size());
+  motions_.clear();
+  for (int b = 0; b < count; ++b) {
+    const Body& body = model.bodies[b];
+    Motion& motion = motions_.emplace_back(Motion{
+        .rigid = {.centre = state.bodies[b].position, .reach = body.reach}, .half_width = body.width / 2});
+    if (state.bodies[b].level != ModelLevel::frame) continue;
+    for (int i = body.first_node; i < body.first_node + body.node_count; ++i)
+      motion.box.extend(state.position[i]);
+    motion.rigid = {.centre = motion.box.center(), .reach = motion.box.sizes().norm() / 2};
   }
-  for (int i = body.first_node; i < body.first_node + body.node_count; ++i) box.extend(state.position[i]);
-  rigid = {.centre = box.center(), .reach = box.sizes().norm() / 2};
+  for (int b = static_cast<int>(order_.size()); b < count; ++b) order_.push_back(b);
 }
 
-// Of motions_.
-double Approach::greatest(double margin) {
-  for (Motion& motion : motions_) motion.way = motion.rigid.way() + motion.more;
-  ranges::sort(motions_, [](const Motion& a, const Motion& b) { return a.first() < b.first(); });
+const Eigen::AlignedBox3d& Approach::box(const Model& model, const State& state, int body) {
+  Eigen::AlignedBox3d& box = motions_[body].box;
+  if (!box.isEmpty()) return box;
+  const BodyState& s = state.bodies[body];
+  const Eigen::AlignedBox3d& own = model.bodies[body].box;
+  const Mat3 r = s.rotation.toRotationMatrix();
+  const Vec3 middle = s.position + r * own.center(), half = r.cwiseAbs() * own.sizes() / 2;
+  return box = {middle - half, middle + half};
+}
+
+// Of motions_ from `state`.
+double Approach::greatest(const Model& model, const State& state, double margin) {
+  for (Motion& motion : motions_)
+    motion.radius = motion.rigid.reach + motion.half_width + motion.rigid.way() + motion.more;
+  // they are almost in order since the last time
+  for (std::size_t k = 1; k < order_.size(); ++k)
+    for (std::size_t j = k; j > 0 && motions_[order_[j]].first() < motions_[order_[j - 1]].first(); --j)
+      std::swap(order_[j], order_[j - 1]);
   double greatest = 0;
-  for (auto a = motions_.begin(); a != motions_.end(); ++a)
-    for (auto b = a + 1; b != motions_.end() && b->first() <= a->last() + margin; ++b) {
-      const double closer = approach(a->rigid, b->rigid) + a->more + b->more;
-      if (closer > greatest &&
-          a->box.exteriorDistance(b->box) <= margin + a->half_width + b->half_width + closer)
+  for (auto one = order_.begin(); one != order_.end(); ++one) {
+    const Motion& a = motions_[*one];
+    const double last = a.rigid.centre.x() + a.radius + margin;
+    for (auto other = one + 1; other != order_.end() && motions_[*other].first() <= last; ++other) {
+      const Motion& b = motions_[*other];
+      if ((a.rigid.centre - b.rigid.centre).norm() > a.radius + b.radius + margin) continue;
+      const double closer = approach(a.rigid, b.rigid) + a.more + b.more;
+      if (closer > greatest && box(model, state, *one).exteriorDistance(box(model, state, *other)) <=
+                                   margin + a.half_width + b.half_width + closer)
         greatest = closer;
     }
+  }
   return greatest;
 }
 
 double Approach::likely(const Model& model, const State& state, double h) {
-  motions_.clear();
+  start(model, state);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[b];
-    Motion& motion = motions_.emplace_back(model, state, b);
+    Motion& motion = motions_[b];
     if (const BodyState& s = state.bodies[b]; s.level != ModelLevel::frame) {
+      const Vec3 half_turn = h / 2 * (s.rotation * s.angular_velocity);
       motion.rigid.shift = h * s.velocity;
-      motion.rigid.turn = exp_quaternion(h * (s.rotation * s.angular_velocity));
+      motion.rigid.turn = Quat(1, half_turn.x(), half_turn.y(), half_turn.z()).normalized();
       motion.more = h * h / 2 * s.force.norm() / body.mass;
       continue;
     }
@@ -57,14 +79,14 @@ double Approach::likely(const Model& model, const State& state, double h) {
       motion.more =
           std::max(motion.more, h * state.velocity[i].norm() + h * h / 2 * state.acceleration[i].norm());
   }
-  return greatest(state.candidate_margin);
+  return greatest(model, state, state.candidate_margin);
 }
 
 double Approach::greatest(const Model& model, const State& from, const State& to, double margin) {
-  motions_.clear();
+  start(model, from);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[b];
-    Motion& motion = motions_.emplace_back(model, from, b);
+    Motion& motion = motions_[b];
     const BodyState &s = from.bodies[b], &e = to.bodies[b];
     if (s.level != ModelLevel::frame && e.level != ModelLevel::frame) {
       motion.rigid.shift = e.position - s.position;
@@ -74,7 +96,7 @@ double Approach::greatest(const Model& model, const State& from, const State& to
         motion.more = std::max(motion.more, (to.position[i] - from.position[i]).norm());
     }
   }
-  return greatest(margin);
+  return greatest(model, from, margin);
 }
 
 void update_candidates(const Model& model, NearSearch& search, State& state, double approach) {

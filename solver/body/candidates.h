@@ -22,20 +22,21 @@ class Approach {
   double greatest(const Model& model, const State& from, const State& to, double margin);
 
  private:
-  // A body that moves as a rigid one and by `more` besides, from where its nodes are in `box`.
+  // A body that moves as a rigid one and by `more` besides.
   struct Motion {
     RigidMotion rigid;
-    double more = 0;  // m
-    Eigen::AlignedBox3d box;
-    double half_width, way = 0;  // m; bound of it all
+    double half_width;             // m
+    double more = 0, radius = 0;   // m; of a sphere in which its surfaces stay
+    Eigen::AlignedBox3d box = {};  // of its nodes at the start, when it is asked for
 
-    Motion(const Model& model, const State& state, int index);  // still, where it is at `state`
-    double first() const { return box.min().x() - half_width - way; }
-    double last() const { return box.max().x() + half_width + way; }
+    double first() const { return rigid.centre.x() - radius; }
   };
-  double greatest(double margin);
+  void start(const Model& model, const State& state);
+  double greatest(const Model& model, const State& state, double margin);
+  const Eigen::AlignedBox3d& box(const Model& model, const State& state, int body);
 
-  std::vector<Motion> motions_;
+  std::vector<Motion> motions_;  // per body
+  std::vector<int> order_;       // bodies by Motion::first
 };
 
 /// Searches again unless State::candidate_margin is above `approach`, m.

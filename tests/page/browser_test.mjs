@@ -78,13 +78,13 @@ const act = `
       }
     }
     found.no_map = text('nomap');
-    const follower = page.controls.findIndex((control) => control.follows);
+    const follower = page.controls.findIndex((control) => control.follows >= 0);
     if (follower >= 0) {
-      const followed = page.controls.findIndex((control) => control.key === page.controls[follower].follows);
+      const { follows: followed, share } = page.controls[follower];
       const shown = (i) => document.querySelector('output[for="control-' + i + '"]').textContent.trim();
       const before = shown(followed);
       move(document.getElementById('control-' + followed), 0.1);
-      found.follows = shown(followed) !== before && shown(follower) === shown(followed);
+      found.follows = shown(followed) !== before && page.values[follower] === share * page.values[followed];
       await until(() => page.changed, 'the run of another friction');
       document.getElementById('back').click();
     }

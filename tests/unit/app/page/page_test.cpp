@@ -160,7 +160,8 @@ TEST(PageControls, friction_of_a_frame_is_that_of_all_contacts_until_it_is_set) 
 
 TEST(PageControls, centre_of_gravity_of_a_cabinet_stays_in_the_middle_until_it_is_set) {
   const std::string text =
-      "topple = 1\n[run]\nduration = 1\n[floor]\nwidth = \"60 mm\"\n[[cabinet]]\nname = \"wardrobe\"\n"
+      "topple = 1\n[run]\nduration = 1\n[floor]\nwidth = \"60 mm\"\n[[cabinet]]\nsection = \"box "
+      "30x1\"\nmaterial = \"steel\"\nname = \"wardrobe\"\n"
       "size = [\"560 mm\", \"960 mm\", \"2260 mm\"]\nmass = \"90 kg\"\n";
   const std::vector<PageControl> controls = page_controls(io::parse_scene(text, "wardrobe.toml"));
   std::vector<double> values;
