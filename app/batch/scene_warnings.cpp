@@ -101,8 +101,8 @@ void warn_of_falls(const Setup& setup, const State& start, std::vector<std::stri
           fmt::format("\"{}\" stands on nothing, as the scene has no [floor]: it falls", body.name));
     else if (bottom - under.top > k_hangs)
       list.push_back(fmt::format(
-          "\"{}\" stands on nothing: it hangs {:.4g} mm or more above {}{}", body.name,
-          1e3 * (bottom - under.top), what,
+          "\"{}\" stands on nothing: it hangs {:.4g} mm{} above {}{}", body.name, 1e3 * (bottom - under.top),
+          under.body < 0 ? "" : " or more", what,
           setup.run.settle ? "; settling brings it down where that is little, else the run does not "
                              "begin; settle = false lets it fall"
                            : " and falls when the run begins"));

@@ -121,12 +121,10 @@ inline constexpr Phrase k_map_here_exact{"The cell of the shake as it is now: {0
 inline constexpr Phrase k_map_outside{"The present shake is outside of the map.",
                                       "現在の加振はマップの範囲外です。"};
 inline constexpr Phrase k_map_click{
-    "A click shakes like this from now on; R, then Space runs it from the start. Where the scene names no "
-    "accuracy the "
-    "map allows 5 %, a run 1 %: near its edges a run may end otherwise.",
-    "クリックすると現時刻からこの加振に変更。R の後 Space で最初から計算します。シーンに accuracy "
-    "の指定がなければ、"
-    "マップの許容誤差は 5 %、実行は 1 % で、境界付近では結果が異なることがあります。"};
+    "A click shakes like this from now on; R, then Space runs it from the start.\n"
+    "Without run.accuracy the map allows 5 %, a run 1 %.",
+    "クリックすると現時刻からこの加振に変更。R の後 Space で最初から計算します。\n"
+    "run.accuracy の指定がなければ、許容誤差はマップ 5 %、実行 1 %。"};
 inline constexpr Phrase k_map_of_ground{
     "The shake of a building's ground is set in the scene alone: the floor's was computed from it.",
     "建物の地動はシーンでのみ設定できます（床の揺れは地動から計算済み）。"};
