@@ -162,10 +162,11 @@ TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
   write_bytes("s.toml", changed("alpha = \"50 kgf\"\n", "") + hangs + bracket);
   const Ended ended = topple({"check", "s.toml"});
   EXPECT_EQ(ended.code, 0);
-  for (const char* words : {"\"box\" stands on nothing: it hangs 300 mm above the floor",
-                            "\"lamp\" stands on nothing: it hangs 40 mm or more above \"desk\"; settling brings it "
-                            "down where that is little",
-                            "the centre of gravity of \"vase\" is 45 mm beside \"shelf\""})
+  for (const char* words :
+       {"\"box\" stands on nothing: it hangs 300 mm above the floor",
+        "\"lamp\" stands on nothing: it hangs 40 mm or more above \"desk\"; settling brings it "
+        "down where that is little",
+        "the centre of gravity of \"vase\" is 45 mm beside \"shelf\""})
     EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("anchor \"bracket\" holds \"free\" in the middle of its member"),
             std::string::npos)
