@@ -193,7 +193,7 @@ class Chart {
   }
 
   /// alpha across, with the scene's and the recommended one as lines between two heights of the panel.
-  std::string alpha_axis(double from, double to) const {
+  std::string alpha_axis(double from, double to, double labels) const {
     const double least = in_kgf(study_.alphas.front()) / 1.5, most = in_kgf(study_.alphas.back()) * 1.5;
     std::string out = fmt::format(
         "set logscale x\nset xrange [{}:{}]\nset format x '10^{{%T}}'\nset mxtics 10\n"
@@ -202,7 +202,7 @@ class Chart {
     const auto mark = [&](double alpha, const char* text, double above, const char* style) {
       const double x = in_kgf(alpha);
       const bool right = x > std::sqrt(least * most);
-      return upright(x, from, to, style, text, from + above,
+      return upright(x, from, to, style, text, labels + above,
                      right ? "right offset -0.5,0" : "left offset 0.5,0");
     };
     out += mark(study_.law.alpha, "scene", 0.03, "lc rgb '#111111' lw 1.6 dt (10,5)");
@@ -286,7 +286,7 @@ class Chart {
     }
     return plot.data +
            panel(1, "Depth at rest", "deepest contact; theory: (W / n α)^{1/q} where evenly loaded") +
-           alpha_axis(0, 1) + level(k_depth_bound, "bound 1 %") + decades("y", least, most) +
+           alpha_axis(0, 1, 0.12) + level(k_depth_bound, "bound 1 %") + decades("y", least, most) +
            log_axis("y", "10^{%T}") + "set key bottom left\nset ylabel 'depth 1 − l / L' offset 1,0\n" +
            plot.command();
   }
@@ -393,7 +393,7 @@ class Chart {
     plot.add("bounce", bounce, "with points " + mark_style(0) + " title 'solver'");
     return plot.data +
            panel(4, "Contact frequency", "vertical motion of " + shown_names(body) + " about rest") +
-           alpha_axis(0, 0.86) + decades("y", line.front().y, most) + levels + log_axis("y", "%g") +
+           alpha_axis(0, 0.86, 0) + decades("y", line.front().y, most) + levels + log_axis("y", "%g") +
            "set key top left\nset ylabel 'frequency, Hz' offset 1,0\n" + plot.command();
   }
 
@@ -425,7 +425,7 @@ class Chart {
            panel(5, "Error against rigid contact",
                  fmt::format("{}: b/h = {:.3g}, {:.4g} gal", shown_names(body), rigid,
                              rigid * body.theory.gravity / k_gal)) +
-           alpha_axis(0.27, 1) + level(100 * k_theory_bound, "bound 2 %") +
+           alpha_axis(0.27, 1, 0.27) + level(100 * k_theory_bound, "bound 2 %") +
            "set logscale y\nset yrange [0.0005:100]\nset format y '%g'\nset mytics 10\nset key bottom left\n"
            "set ylabel '|error|, % (0.01 stands for less)' offset 1,0\n" +
            plot.command();

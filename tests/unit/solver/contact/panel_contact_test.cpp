@@ -113,6 +113,26 @@ TEST(PanelContact, force_is_the_derivative_of_the_energy) {
   EXPECT_GT(giving_way, 200);
 }
 
+// A parallelogram, whose sides are not square to each other: the tip is over the same place of it.
+TEST(PanelContact, a_skewed_panel_is_touched_where_the_tip_is) {
+  std::mt19937 rng(14);
+  for (const double skew : {-0.8, 0.8})
+    for (const auto& [u, v] : {std::pair(0.75, 0.3), std::pair(0.25, 0.7), std::pair(0.9, 0.6)}) {
+      OnSheet on(Vec3(0.4 * u, 0.3 * v, 0.5 * k_sheet_width), 0, rng);
+      const Vec3 along = skew * (on.position[3] - on.position[2]);
+      on.position[0] += v * along;
+      on.position[1] += v * along;
+      on.position[4] += along;
+      on.position[5] += along;
+      on.start();
+      const MemberContacts found = on.find(elastic_law());
+      ASSERT_EQ(found.touches.size(), 1u) << skew << ": " << u << ", " << v;
+      EXPECT_NEAR(found.touches[0].t, u, 1e-13);
+      EXPECT_NEAR(found.touches[0].u, v, 1e-13);
+      EXPECT_NEAR(found.touches[0].l, 0.5 * k_sheet_width, 1e-15);
+    }
+}
+
 TEST(PanelContact, force_and_moment_of_the_pair_vanish) {
   std::mt19937 rng(12);
   for (const Vec3& tip : tips(rng)) {
