@@ -18,8 +18,8 @@ struct RigidMotion {
   double way() const { return shift.norm() + 2 * reach * turn.vec().norm(); }
 };
 
-/// Bound of the way by which points of two bodies come closer, m: that of points of the smaller one against
-/// the other's there.
+/// Bound of the way by which points of two bodies come closer, m: the greatest displacement of points of the
+/// smaller body relative to the other body, extended to where they are.
 inline double approach(const RigidMotion& a, const RigidMotion& b) {
   if (a.reach > b.reach) return approach(b, a);
   const Vec3 arm = a.centre - b.centre;
