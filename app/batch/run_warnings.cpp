@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
@@ -81,23 +82,33 @@ void warn_of_instability(const Run& run, Warnings& list) {
       unstable->factor));
 }
 
-/// Measured on columns (scenes.md).
+// Of the member whose elements are longest beside the half wave in which what it bears would buckle it, as
+// the path ends; measured on columns (scenes.md).
 void warn_of_few_elements(const Run& run, Warnings& list) {
-  constexpr int k_enough = 8;
-  const auto lost = [](const LoadStep& step) {
-    return step.stability.loss == Stability::Loss::buckling ||
-           step.stability.loss == Stability::Loss::limit_point;
-  };
-  if (std::ranges::none_of(run.load_steps(), lost)) return;
-  int fewest = k_enough;
-  for (const Member& member : run.setup().model.members) fewest = std::min(fewest, member.element_count);
-  if (fewest == k_enough) return;
+  constexpr double k_enough = 6, k_good = 8;  // elements in a half wave
+  const Model& model = run.setup().model;
+  double fewest = k_enough, borne = 0;
+  const Member* worst = nullptr;
+  if (run.sections().empty()) return;  // it had no equilibrium to begin with
+  for (const Member& member : model.members)
+    for (int e = member.first_element; e < member.first_element + member.element_count; ++e) {
+      const Element& element = model.elements[e];
+      const double compression = -run.sections()[e].normal.x();
+      if (!(compression > 0)) continue;
+      const double half_wave =
+          std::numbers::pi * std::sqrt(element.bending_stiffness.tail<2>().minCoeff() / compression);
+      if (!(half_wave < fewest * element.length)) continue;
+      fewest = half_wave / element.length;
+      borne = compression;
+      worst = &member;
+    }
+  if (!worst) return;
+  const int enough = 2 * static_cast<int>(std::ceil(worst->element_count * k_good / fewest / 2));
   list.push_back(fmt::format(
-      "members of {} elements buckle at more than those of theory: by 10 % with 4 elements in a half wave of "
-      "the buckled line, 2.4 % with 8, 0.6 % with 16 (that of a cantilever is twice as long as it, that "
-      "between "
-      "clamped ends half as long)",
-      fewest));
+      "member \"{}\" of \"{}\" bears {:.4g} kN on {} elements, {:.1f} in a half wave of the line that "
+      "buckles under it: it bends too little, buckles at 10 % more than in theory with 4, at more than twice "
+      "with 2, with fewer not at all; elements = {} is within 2.4 %",
+      worst->name, model.bodies[worst->body].name, borne / 1e3, worst->element_count, fewest, enough));
 }
 
 void warn_of_stress(const Run& run, Warnings& list) {
@@ -216,8 +227,10 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_stress(run, list);
   warn_of_pieces(run, list);
   warn_of_instability(run, list);
-  warn_of_few_elements(run, list);
-  if (is_static(run.setup())) return list;
+  if (is_static(run.setup())) {
+    warn_of_few_elements(run, list);
+    return list;
+  }
   if (!run.parameters().adaptive) warn_of_step(run, list);
   warn_of_law(run, list);
   warn_of_energy(run, list);

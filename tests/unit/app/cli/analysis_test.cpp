@@ -63,6 +63,38 @@ TEST_F(AnalysisTest, static_run_that_goes_on_tells_what_is_not_stable_and_warns_
       << ended.err;
 }
 
+// 26.3 kN is Euler's load of a bar of 40 x 10 mm between clamped ends 1 m apart: a half wave of 0.5 m.
+TEST_F(AnalysisTest, a_column_of_too_few_elements_to_buckle_is_told) {
+  const auto told = [&](const char* elements, const char* force) {
+    write_bytes("column.toml",
+                std::string("topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\n") + R"(
+[[material]]
+name = "steel"
+young = "200 GPa"
+poisson = 0.3
+density = "7850 kg/m^3"
+[[section]]
+name = "bar"
+shape = "solid"
+size = ["40 mm", "10 mm"]
+[[frame]]
+name = "column"
+nodes = [[0, 0, 0], [0, 0, 1]]
+supports = [{ node = 0, fix = "xyzXYZ" }, { node = 1, fix = "xyXYZ" }]
+members = [{ nodes = [0, 1], section = "bar", material = "steel", elements = )" +
+                    elements + " }]\nloads = [{ node = 1, force = [0, 0, " + force + "] }]\n");
+    return topple({"run", "column.toml", "--quiet"}).err;
+  };
+  const std::string half = told("2", "-26300");
+  EXPECT_NE(half.find("member \"member-0\" of \"column\" bears 26.3 kN on 2 elements, 1.0 in a half wave"),
+            std::string::npos)
+      << half;
+  EXPECT_NE(half.find("elements = 16 is"), std::string::npos) << half;
+  EXPECT_EQ(told("16", "-26300").find("half wave"), std::string::npos);
+  EXPECT_EQ(told("2", "26300").find("half wave"), std::string::npos);  // pulled
+  EXPECT_EQ(told("2", "-700").find("half wave"), std::string::npos);   // 6.1 elements
+}
+
 class FailureTest : public AnalysisTest {
  protected:
   /// An arm of steel that yields at 235 MPa, its first node held in `fix`, `mass` at the other.
