@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "solver/contact/coulomb.h"
 #include "solver/contact/penalty.h"
@@ -111,11 +112,19 @@ ContactOutput coulomb_at_new_velocity(const ContactLaw& law, ContactInput& in, d
   const double loss = p * normal_loss(law.restitution), eps2 = law.normal_speed * law.normal_speed;
   const double free_n = n.dot(free);
   double vn = n.dot(in.velocity);
-  for (int iteration = 0; iteration < 30; ++iteration) {
+  // what is left grows with vn, steeply where it changes sign: Newton leaps to and fro over that unless the
+  // speeds with less and with more that are known are halved where a step is not half of the one before
+  double less = free_n + (p - loss) / impedance, more = free_n + (p + loss) / impedance;
+  double last = std::numeric_limits<double>::infinity();
+  for (int iteration = 0; iteration < 100; ++iteration) {
     const double inverse = 1 / std::sqrt(vn * vn + eps2), direction = vn * inverse;
-    const double step = (impedance * (vn - free_n) - p + loss * direction) /
-                        (impedance + loss * eps2 * inverse * inverse * inverse);
-    vn -= step;
+    const double left = impedance * (vn - free_n) - p + loss * direction;
+    (left > 0 ? more : less) = vn;
+    double step = -left / (impedance + loss * eps2 * inverse * inverse * inverse);
+    if (!(std::abs(step) <= last / 2 && vn + step >= less && vn + step <= more))
+      step = (less + more) / 2 - vn;
+    last = std::abs(step);
+    vn += step;
     // what is left after a step is its square over that of the smoothing
     if (!(step * step > 1e-12 * (1 + std::abs(vn)) * law.normal_speed)) break;
   }
