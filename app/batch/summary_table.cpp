@@ -88,13 +88,12 @@ std::string own_frictions(const ordered_json& s) {
 
 // What moved bodies on the levels that they were on.
 std::string integrators(const ordered_json& s) {
-  std::set<ModelLevel> levels;
-  bool has_impulses = false;
+  std::set<ModelLevel> levels, otherwise;
   const auto take = [&](const ordered_json& of) {
     const ModelLevel level = level_called(of["model"].get<std::string>()).kind;
     levels.insert(level);
-    has_impulses = has_impulses || (level == ModelLevel::rigid &&
-                                    of["integrator"] == row_of(k_level_integrators, level).impulses);
+    const LevelIntegrator& integrator = row_of(k_level_integrators, level);
+    if (integrator.differs && of["integrator"] == integrator.otherwise) otherwise.insert(level);
   };
   for (const auto& b : s["bodies"]) {
     take(b);
@@ -106,10 +105,9 @@ std::string integrators(const ordered_json& s) {
   for (const ModelLevel level :
        {ModelLevel::frame, ModelLevel::elastic, ModelLevel::rigid, ModelLevel::planar}) {
     if (!levels.contains(level)) continue;
-    const Phrase* const own = model_words::moved_by(level, has_impulses);
-    const bool of_scene = own == nullptr;
-    std::string words = of_scene ? s["integrator"].get<std::string>() : std::string(own->english);
-    if (of_scene && levels.size() > 1) words += " (frames)";
+    const Phrase* const own = model_words::moved_by(level, otherwise.contains(level));
+    std::string words = own ? std::string(own->english) : s["integrator"].get<std::string>();
+    if (level == ModelLevel::frame && levels.size() > 1) words += " (frames)";
     if (level == ModelLevel::planar) words += " (planar)";
     all.push_back(std::move(words));
   }

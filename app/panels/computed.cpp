@@ -17,7 +17,7 @@ namespace {
 std::string moved_by(const Player& player, ModelLevel level) {
   const Parameters& parameters = player.parameters();
   const Phrase* const own =
-      model_words::moved_by(level, has_impulses(player.scene().setup.model, parameters));
+      model_words::moved_by(level, moves_otherwise(level, player.scene().setup.model, parameters));
   return say(own == nullptr ? phrase_of_choice(traits(parameters.integrator).word) : *own);
 }
 

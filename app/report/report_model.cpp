@@ -91,7 +91,7 @@ std::string integrators(const ReportPage& page) {
   std::string out;
   for (const ModelLevel level : levels) {
     const Phrase* const own =
-        model_words::moved_by(level, has_impulses(model, page.report().scene->setup.parameters));
+        model_words::moved_by(level, moves_otherwise(level, model, page.report().scene->setup.parameters));
     const std::string words = own == nullptr ? of_frames(page) : page.text(*own);
     out += (out.empty() ? "" : "; ") +
            (levels.size() > 1 ? page.text(words::k_of_models, words, page.text(model_words::phrase_of(level)))

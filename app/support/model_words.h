@@ -79,19 +79,23 @@ inline Phrase phrase_of_choice(std::string_view word) {
 /// impulses (integrators.h).
 struct MovedBy {
   ModelLevel kind;
-  Phrase words, impulses;
+  Phrase words, otherwise;  ///< LevelIntegrator; without words: the scene's integrator
 };
 inline constexpr MovedBy k_moved_by[] = {
-    {ModelLevel::planar, {"Taylor series", "テイラー級数"}, {"Taylor series", "テイラー級数"}},
+    {ModelLevel::planar, {"Taylor series", "テイラー級数"}, {}},
     {ModelLevel::rigid,
      {"central differences, TR-BDF2 on stiff contacts", "中央差分法、硬い接触では TR-BDF2"},
      {"central differences, TR-BDF2 on stiff contacts, impulses where bodies meet",
       "中央差分法、硬い接触では TR-BDF2、物体どうしの接触では力積"}},
-    {ModelLevel::elastic, {"central differences", "中央差分法"}, {"central differences", "中央差分法"}}};
-/// Null: the scene's integrator does.
-inline const Phrase* moved_by(ModelLevel level, bool has_impulses) {
-  const auto* const own = ranges::find(k_moved_by, level, &MovedBy::kind);
-  return own == std::end(k_moved_by) ? nullptr : has_impulses ? &own->impulses : &own->words;
+    {ModelLevel::elastic, {"central differences", "中央差分法"}, {}},
+    {ModelLevel::frame,
+     {},
+     {"generalized-alpha or, where cheaper, central differences", "一般化α法、安く済む所では中央差分法"}}};
+/// otherwise: moves_otherwise() (integrators.h). Null: the scene's integrator does.
+inline const Phrase* moved_by(ModelLevel level, bool otherwise) {
+  const MovedBy& by = row_of(k_moved_by, level);
+  const Phrase& words = otherwise ? by.otherwise : by.words;
+  return words.english == std::string_view() ? nullptr : &words;
 }
 
 }  // namespace topple::app::model_words

@@ -237,7 +237,10 @@ void Viewer::build(const std::function<void()>& over, bool covered) {
   const LiveStatus& status = player_.status();
   const int failed = status.kind == LiveStatus::Kind::failed ? status.element : -1;
   const std::optional<std::int32_t> pale = player_.ghost_branch();
-  if (!same_instant(row, row_) || failed != failed_element_ || pale != pale_branch_) scene_changed_ = true;
+  const std::size_t rows = player_.extent().way.size();  // scales go by them: a recording is read in pieces
+  if (!same_instant(row, row_) || failed != failed_element_ || pale != pale_branch_ || rows != rows_)
+    scene_changed_ = true;
+  rows_ = rows;
   pale_branch_ = pale;
   failed_element_ = failed;
   row_ = std::move(row);

@@ -209,6 +209,7 @@ class Viewer {
   int failed_element_ = -1;                  // marked; -1: none
   std::optional<std::int32_t> pale_branch_;  // that was left
   bool scene_changed_ = true, camera_changed_ = true;
+  std::size_t rows_ = 0;      // of the run that is shown, when the scene was drawn
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;

@@ -5,12 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/element/damping.h"
+#include "solver/frame/central_difference.h"
 #include "solver/frame/integrator.h"
 #include "solver/frame/settle.h"
 #include "solver/state/step_limits.h"
 
 namespace topple {
 namespace {
+
+constexpr double k_explicit_share = 0.9;  // of the greatest stable substep
+constexpr int k_most_substeps = 7;        // cost what an implicit step does (frame_bench)
 
 // Mean rotation of a body's nodes, of which `first` is the first one, rad/s.
 double spin(const Body& body, const BodyMotion& motion, int first) {
@@ -57,6 +62,12 @@ double member_limit(const BodySystem& system, const BodyMotion& motion) {
 
 }  // namespace
 
+bool may_take_substeps(const Model& model, const Parameters& parameters, int body) {
+  return parameters.adaptive && parameters.integrator == Integrator::generalized_alpha &&
+         !model.bodies[body].ground && !parameters.models.empty() &&
+         parameters.models[body] == BodyModel::automatic;
+}
+
 bool FramePart::has(const std::vector<char>& marked) const {
   return std::any_of(system_.bodies.begin(), system_.bodies.end(), [&](int b) { return marked[b]; });
 }
@@ -98,11 +109,42 @@ void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch,
   IntegratorScratch& w = scratch.frame;
   {
     const InPhase phase(w.profile, Phase::forces);
-    outcome.status = traits(span.parameters.integrator).advance(system_, span, next, w, outcome.exchanged);
+    outcome.status =
+        span.h <= explicit_reach(span.parameters)
+            ? advance_in_substeps(span, next, w, outcome.exchanged)
+            : traits(span.parameters.integrator).advance(system_, span, next, w, outcome.exchanged);
   }
   if (!outcome.status.ok()) return;
   const InPhase phase(w.profile, Phase::energy);
   outcome.held = system_.energy(span.end.law, w.trial, system_.contacts, sections_);
+}
+
+StepStatus FramePart::advance_in_substeps(const StepSpan& span, State& next, IntegratorScratch& w,
+                                          StepEnergy& energy) {
+  const int count = static_cast<int>(std::ceil(span.h / substep_->step));
+  StepStatus status;
+  StepInputs from = span.start;
+  for (int k = 1; k <= count && status.ok(); ++k) {
+    const StepInputs to =
+        k == count ? span.end : StepInputs(span.parameters, span.start.time + k * span.h / count, from);
+    status =
+        advance_central_difference(system_, {span.parameters, from, to, span.h / count, 0}, next, w, energy);
+    from = to;
+  }
+  return status;
+}
+
+double FramePart::explicit_reach(const Parameters& parameters) {
+  const Model& model = system_.model;
+  if (!system_.rigid.empty() || std::any_of(system_.bodies.begin(), system_.bodies.end(),
+                                            [&](int b) { return !may_take_substeps(model, parameters, b); }))
+    return 0;
+  const ContactLaw law = stiffest_law(parameters);
+  double damping = 0;
+  for (const int b : system_.bodies) damping = std::max(damping, damping_time(model, parameters, b));
+  if (!substep_ || substep_->damping != damping || !(substep_->law == law))
+    substep_ = {law, damping, k_explicit_share * explicit_limit(system_, &law, damping)};
+  return k_most_substeps * substep_->step;
 }
 
 double FramePart::time_limit(const Parameters& parameters, const State& state) {

@@ -1,10 +1,22 @@
 // Frames that may touch each other and rigid bodies, or one alone.
 #pragma once
 
+#include <optional>
+
 #include "solver/body/part.h"
 #include "solver/frame/body_system.h"
 
 namespace topple {
+
+/// Whether a body that is a frame takes explicit substeps where these cost less: in a run with automatic
+/// steps one that `auto` made a frame. Where an integrator is named no body is automatic.
+bool may_take_substeps(const Model& model, const Parameters& parameters, int body);
+
+/// Longest substep of central differences, s, and what it was found for.
+struct StableSubstep {
+  ContactLaw law;
+  double damping, step;
+};
 
 /// One system (islands.h).
 class FramePart final : public Part {
@@ -20,6 +32,7 @@ class FramePart final : public Part {
   BodyEnergy energy(const StepInputs& now, const State& state) override;
   void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) override;
   double time_limit(const Parameters& parameters, const State& state) override;
+  double explicit_reach(const Parameters& parameters) override;
   void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                    Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
@@ -28,11 +41,13 @@ class FramePart final : public Part {
 
  private:
   void find_contacts(const StepInputs& now, const State& state);
+  StepStatus advance_in_substeps(const StepSpan& span, State& next, IntegratorScratch& w, StepEnergy& energy);
 
   BodySystem& system_;
   std::vector<SectionForces>& sections_;
   BodyMotion motion_;
   Contacts contacts_;
+  std::optional<StableSubstep> substep_;
 };
 
 }  // namespace topple

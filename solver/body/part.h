@@ -1,6 +1,7 @@
 // What a step advances on its own: some bodies that touch no body of another part within it.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -58,6 +59,9 @@ class Part {
   virtual void advance(const StepSpan& span, State& next, PartScratch& scratch, PartOutcome& outcome) = 0;
   /// Longest step that resolves how its bodies touch and turn, s (step_limits.h).
   virtual double time_limit(const Parameters& parameters, const State& state) = 0;
+  /// Longest step, s, that its frames take in explicit substeps, which cost less than one implicit step; 0:
+  /// they never do. Infinite without frames.
+  virtual double explicit_reach(const Parameters&) { return std::numeric_limits<double>::infinity(); }
   /// Finds what acts on its rigid and elastic bodies at `state`; with_members: between members too.
   virtual void find_forces(const StepInputs&, const State&, [[maybe_unused]] bool with_members) {}
   /// Appends its contact forces at `state`. Of rigid and elastic bodies it finds the section forces too.

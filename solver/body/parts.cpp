@@ -1,6 +1,7 @@
 #include "solver/body/parts.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "solver/body/frame_part.h"
@@ -146,6 +147,12 @@ BodyEnergy Parts::energy(const StepInputs& now, const State& state) {
   return held;
 }
 
+double Parts::explicit_reach(const Parameters& parameters) {
+  double reach = moves_nodes_ ? std::numeric_limits<double>::infinity() : 0;
+  for (const auto& part : parts_) reach = std::min(reach, part->explicit_reach(parameters));
+  return reach;
+}
+
 double Parts::time_limit(const Parameters& parameters, const State& state) {
   double limit = look_ahead(model_, parameters, state);
   for (const auto& part : parts_) limit = std::min(limit, part->time_limit(parameters, state));
@@ -153,12 +160,7 @@ double Parts::time_limit(const Parameters& parameters, const State& state) {
 }
 
 std::optional<ExplicitLimit> Parts::explicit_limit(const Parameters& parameters, const State& state) {
-  ContactLaw law = parameters.contact;
-  if (parameters.contact_ramp.over > 0) {
-    const ContactLaw& before = parameters.contact_before;
-    law.alpha = std::max(law.alpha, before.alpha);
-    if (stiffness_bound(before).normal > stiffness_bound(law).normal) law.q = before.q;
-  }
+  const ContactLaw law = stiffest_law(parameters);
   std::optional<ExplicitLimit> least;
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     BodySystem* const system = state.bodies[b].level == ModelLevel::frame ? islands_.alone(b) : nullptr;

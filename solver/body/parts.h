@@ -47,6 +47,8 @@ class Parts {
   /// (step_control.h), and of each part T_contact/20 of a body that touches, max(time to touch, L/(4 v))
   /// where a contact closes, 0.1 rad/|omega| (step_limits.h).
   double time_limit(const Parameters& parameters, const State& state);
+  /// Part::explicit_reach of all frames; 0 without.
+  double explicit_reach(const Parameters& parameters);
   /// Least over the frames of `state`, each alone with all contacts closed, with the stiffer of the two laws
   /// between which an edit changes; none without frames.
   std::optional<ExplicitLimit> explicit_limit(const Parameters& parameters, const State& state);

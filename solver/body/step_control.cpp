@@ -76,8 +76,8 @@ double look_ahead(const Model& model, const Parameters& parameters, const State&
   return limit;
 }
 
-double step_error(const Model& model, const Parameters& parameters, const State& before, const State& after,
-                  double h, const std::vector<char>& with_frames) {
+StepError step_error(const Model& model, const Parameters& parameters, const State& before,
+                     const State& after, double h, const std::vector<char>& with_frames) {
   double factor = 0, rigid_factor = 0;
   if (const auto coefficients = traits(parameters.integrator).coefficients) {
     const GeneralizedAlpha c = coefficients(parameters);
@@ -104,7 +104,7 @@ double step_error(const Model& model, const Parameters& parameters, const State&
         std::max(greatest, (frame ? factor : rigid_factor) * h * std::sqrt(change / body.mass) / allowed);
   }
   const double unexplained = std::abs(after.energy.unexplained() - before.energy.unexplained());
-  return std::max(greatest, unexplained / (k_energy_part * parameters.tolerance * largest));
+  return {greatest, unexplained / (k_energy_part * parameters.tolerance * largest)};
 }
 
 double next_kink(const Model& model, const Parameters& parameters, double t) {

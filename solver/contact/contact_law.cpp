@@ -246,6 +246,16 @@ ContactLaw contact_law(const Parameters& parameters, double t) {
   return law;
 }
 
+ContactLaw stiffest_law(const Parameters& parameters) {
+  ContactLaw law = parameters.contact;
+  if (parameters.contact_ramp.over > 0) {
+    const ContactLaw& before = parameters.contact_before;
+    law.alpha = std::max(law.alpha, before.alpha);
+    if (stiffness_bound(before).normal > stiffness_bound(law).normal) law.q = before.q;
+  }
+  return law;
+}
+
 double penalty_force(const ContactLaw& law, double depth, bool between_members) {
   if (!(depth > 0)) return 0;
   double force = penalty_power(depth, law.q);

@@ -29,6 +29,8 @@ struct StickSpring {
 /// The law at time t. During the ramp of an edit alpha (evenly in its logarithm), q, both frictions and
 /// restitution go from the old to the new values; the rest is new at once.
 ContactLaw contact_law(const Parameters& parameters, double t);
+/// The stiffer of the two between which an edit changes.
+ContactLaw stiffest_law(const Parameters& parameters);
 
 /// Between members the force hardens beyond this depth, 1 - l/L.
 inline constexpr double k_hardening_depth = 0.8;

@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-11";
+  return "topple-12";
 }
 
 }  // namespace topple

@@ -44,11 +44,16 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
   for (;;) {
     status = try_step(h);
     iterations += status.newton_iterations;
-    const double error =
-        status.ok() && !by_limit ? step_error(model, parameters, state, w.next, h, w.parts.with_frames()) : 0;
-    if (status.ok() && error <= 1) {
+    StepError error;
+    if (status.ok() && !by_limit)
+      error = step_error(model, parameters, state, w.next, h, w.parts.with_frames());
+    // explicit substeps follow the motion: they are as short as they must be, whatever h
+    const double reach = by_limit ? 0 : w.parts.explicit_reach(parameters);
+    const double counts = h <= reach ? error.energy : error.greatest();
+    if (status.ok() && counts <= 1) {
       if (h == left) w.next.time = state.time + left;
-      const double wanted = std::min(next_size(h, error, w.most_iterations), k_longest_step);
+      const double wanted =
+          std::min(std::max(next_size(h, error.greatest(), w.most_iterations), reach), k_longest_step);
       w.next.step_size = h;
       if (!by_limit) change_step(w.next, std::min(wanted, w.parts.time_limit(parameters, w.next)));
       break;
@@ -66,7 +71,9 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
       break;
     }
     ++rejected;
-    h = std::max(status.ok() ? std::min(next_size(h, error, 0), h / 1.2) : h / 2, k_least_step);
+    double shorter = status.ok() ? next_size(h, counts, 0) : h / 2;
+    if (h > reach) shorter = std::max(shorter, reach);
+    h = std::max(std::min(shorter, h / 1.2), k_least_step);
   }
   status.newton_iterations = iterations;
   status.rejected = rejected;

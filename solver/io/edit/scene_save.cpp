@@ -62,6 +62,9 @@ class Rewriting {
       if (!retyped && !step && edited_value(read, key, index) == edited_value(now_, key, index)) continue;
       if (key == Edit::Key::time_step && now_.adaptive && read.adaptive) continue;
       if (key == Edit::Key::integrator && !frames_only()) continue;
+      if (key == Edit::Key::friction_static && read.contact.friction_static == 0 &&
+          now_.contact.excess() == 0)
+        continue;  // it goes with friction
       const auto& analyses = key_of(key).analyses;
       if (!analyses.empty() && ranges::find(analyses, analysis_) == analyses.end()) continue;
       keys.emplace_back(key, index);

@@ -81,7 +81,9 @@ void add_run(std::vector<Key>& keys) {
     numbers.push_back(static_cast<int>(one.kind));
   }
   rows.word("integrator", named,
-            "of frames; auto is generalized-alpha. The others are moved as the summary says")
+            "of frames; auto is generalized-alpha and, in steps of the program's own choice, central "
+            "differences "
+            "where these cost less. The others are moved as the summary says")
       .absent(0)
       .only_in({"dynamic"});
   keys.back().numbers = numbers;

@@ -113,8 +113,8 @@ void drop_extrapolated(const FragilityPlan& plan, FragilityCurve& curve, const c
   const Level& end = above ? *std::ranges::max_element(curve.levels, {}, share)
                            : *std::ranges::min_element(curve.levels, {}, share);
   curve.fit.fit.reset();
-  if (above == (share(end) >= 0.5)) {  // it was met, and left again
-    const Level& last = above ? curve.levels.back() : curve.levels.front();
+  const Level& last = above ? curve.levels.back() : curve.levels.front();
+  if (&end != &last && above == (share(end) >= 0.5)) {  // it was met, and left again
     curve.fit.why_not =
         fmt::format("it does not become more frequent steadily: {} of {} runs at {:.4g}, {} of {} at {:.4g}",
                     end.hits, end.runs, end.intensity, last.hits, last.runs, last.intensity);

@@ -263,6 +263,17 @@ TEST(SavedScene, the_share_of_alpha_between_members_that_was_chosen_stays_when_a
   EXPECT_EQ(again.title, scene.title + " (changed)");  // it tells of what was before
 }
 
+TEST(SavedScene, static_friction_that_goes_with_friction_stays_unwritten) {
+  const Scene scene = load_scene("cabinet");
+  for (const double held : {0.45, 0.5}) {
+    Parameters now = scene.setup.parameters;
+    apply({Edit::Key::friction, 0, Vec3(0.45, 0, 0)}, scene.setup.model, 0.4, now);
+    apply({Edit::Key::friction_static, 0, Vec3(held, 0, 0)}, scene.setup.model, 0.4, now);
+    const SavedScene saved = edited_scene(scene, now);
+    EXPECT_EQ(saved.text.find("friction_static") != std::string::npos, held > 0.45) << saved.text;
+  }
+}
+
 TEST(SavedScene, what_an_absent_key_means_is_written_where_another_edit_would_change_it) {
   std::string text = k_to_be_saved;
   text.erase(text.find("alpha = \"500 kgf\""), std::string("alpha = \"500 kgf\"").size());

@@ -164,19 +164,34 @@ TEST(FragilityStudy, shares_that_fall_have_no_curve) {
       << overturns.fit.why_not;
 }
 
-// Two of four runs at a level in the middle, none at the last: no median lies above the levels.
-TEST(FragilityStudy, half_of_few_runs_that_are_met_and_left_again_are_told_as_that) {
-  const FragilityPlan plan = plan_fragility(pulsed(), "pga=100 gal..1000 gal:4", {.runs = 4}, 0.05);
+/// That of the first quantity, with `hits` of `runs` at each level.
+FragilityCurve curve_with(const FragilityPlan& plan, int runs, const std::vector<int>& hits) {
   std::vector<std::string> rows;
   for (int k = 0; k < plan.cases(); ++k) {
-    const int hits = k / plan.chunks() / plan.records() == 2 ? 2 : 0;
-    const std::string all = "[" + std::to_string(hits) + ",0,0]";
-    rows.push_back("{\"runs\":4,\"failed\":0,\"planar\":4,\"status\":\"completed\",\"hits\":[" + all + "," +
-                   all + "],\"closed\":[],\"cpu_s\":0}");
+    const int level = k / plan.chunks() / plan.records();
+    const std::string count = std::to_string(runs),
+                      all = "[" + std::to_string(hits[static_cast<std::size_t>(level)]) + ",0,0]";
+    rows.push_back("{\"runs\":" + count + ",\"failed\":0,\"planar\":" + count +
+                   ",\"status\":\"completed\",\"hits\":[" + all + "," + all + "],\"closed\":[],\"cpu_s\":0}");
   }
-  const FragilityCurve lifts = gather(plan, rows).curves[0][0];
+  return gather(plan, rows).curves[0][0];
+}
+
+// Two of four runs at a level in the middle, none at the last: no median lies above the levels.
+TEST(FragilityStudy, half_of_few_runs_that_are_met_and_left_again_are_told_as_that) {
+  const FragilityCurve lifts =
+      curve_with(plan_fragility(pulsed(), "pga=100 gal..1000 gal:4", {.runs = 4}, 0.05), 4, {0, 0, 2, 0});
   EXPECT_FALSE(lifts.fit.fit);
   EXPECT_EQ(lifts.fit.why_not.find("the median lies"), std::string::npos) << lifts.fit.why_not;
+}
+
+// The median of the fit lies just above the last level: 1204 gal.
+TEST(FragilityStudy, half_of_the_runs_at_the_last_level_are_not_left_again) {
+  const FragilityCurve lifts =
+      curve_with(plan_fragility(pulsed(), "pga=600 gal..1200 gal:4", {.runs = 20}, 0.05), 20, {0, 1, 4, 10});
+  EXPECT_FALSE(lifts.fit.fit);
+  EXPECT_TRUE(lifts.fit.why_not.starts_with("the median lies above the levels")) << lifts.fit.why_not;
+  EXPECT_NE(lifts.fit.why_not.find("at most 50 %"), std::string::npos) << lifts.fit.why_not;
 }
 
 TEST(FragilityStudy, levels_of_any_measure_are_reached) {
