@@ -28,7 +28,7 @@ constexpr double k_more_way = 2e-4;  // m
 constexpr double k_stale = 5e-4;     // m, by which bodies come nearer until a gap is found anew
 constexpr double k_most_gap = 0.1;   // m, of pairs, about
 constexpr double k_deep = 0.5;       // depth from which a centre line may have passed the other
-constexpr std::size_t k_sets = 32;   // whose matrices are kept
+constexpr std::size_t k_sets = 32;   // not used now, whose matrices are kept
 constexpr std::size_t k_places = 5;  // of a pair, see MemberTouch
 
 PackMat3 turned(const BodyState& s) {
@@ -223,7 +223,6 @@ void RigidIsland::find_bounds() {
 RigidIsland::TouchingBodies& RigidIsland::together(const std::vector<int>& bodies) {
   const auto known = ranges::find_if(sets_, [&](const auto& set) { return set->bodies == bodies; });
   if (known != sets_.end()) return **known;
-  if (sets_.size() >= k_sets) sets_.erase(sets_.begin());
   std::vector<std::pair<int, int>> coupled;
   for (const BodyPair& both : body_pairs_)
     if (both.second >= 0 && ranges::binary_search(bodies, both.first) &&
@@ -231,6 +230,16 @@ RigidIsland::TouchingBodies& RigidIsland::together(const std::vector<int>& bodie
       coupled.emplace_back(place_[both.first], place_[both.second]);
   return *sets_.emplace_back(std::make_unique<TouchingBodies>(
       TouchingBodies{bodies, BlockLu(static_cast<int>(bodies.size()), coupled), {}, {}}));
+}
+
+// The oldest that are not used, beyond k_sets.
+void RigidIsland::drop_sets() {
+  std::size_t more = std::max(sets_.size(), k_sets + used_.size()) - (k_sets + used_.size());
+  std::erase_if(sets_, [&](const auto& set) {
+    const bool drop = more > 0 && ranges::find(used_, set.get()) == used_.end();
+    more -= drop;
+    return drop;
+  });
 }
 
 // With their contacts with planes.
@@ -328,6 +337,7 @@ bool RigidIsland::solve(const StepSpan& span, const State& state) {
     add_bodies(span, state, set);
     for (const int b : bodies) set_of[b] = &set;
   }
+  drop_sets();
   at_start_.resize(k_places * body_pair_of_.size(), -1);
   const auto mark_start = [&](bool marked) {
     for (std::size_t k = 0; k < last_.touches.size(); ++k)

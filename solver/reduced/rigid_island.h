@@ -88,6 +88,7 @@ class RigidIsland {
   void find_bounds();
   void take_gaps(std::span<const int> which);
   TouchingBodies& together(const std::vector<int>& bodies);
+  void drop_sets();
   bool solve(const StepSpan& span, const State& state);
   void add_bodies(const StepSpan& span, const State& state, TouchingBodies& set);
   Vec3 turning_of(const MemberTouch& touch) const;

@@ -389,6 +389,23 @@ TEST(Island, rows_fall_by_impulses_when_they_do_by_substeps) {
   }
 }
 
+// Each by itself is one of forty sets of bodies that touch: more than are kept. They rock as one, so that
+// none meets another; 1e-9 m is what rounding makes of it.
+TEST(Island, many_that_are_near_move_as_one) {
+  topple::Setup setup = row(40, 0.02, BodyModel::rigid);
+  shake(setup, 3, 1);
+  setup.run.duration = 1;
+  topple::Run run(setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(setup.model);
+  const std::vector<BodyState>& bodies = run.state().bodies;
+  const auto moved = [&](std::size_t b) -> Vec3 {
+    return bodies[b].position - setup.model.bodies[b].centre_of_gravity;
+  };
+  EXPECT_GT(moved(0).norm(), 0.01);
+  for (std::size_t b = 1; b < bodies.size(); ++b)
+    EXPECT_LT((moved(b) - moved(0)).norm(), 1e-9) << setup.model.bodies[b].name;
+}
+
 // Forces of rows are those that move the bodies: while a cabinet leans on another one, turns and slides, they
 // are what its acceleration takes, but for some per cent of its weight. Steps of 2 ms at up to 2 rad/s.
 TEST(Island, forces_between_bodies_are_those_that_move_them) {
