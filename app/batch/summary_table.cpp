@@ -4,6 +4,7 @@
 #include <utf8.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -59,14 +60,26 @@ std::string static_head(const ordered_json& s) {
       "{}: {} in {:.2f} s of wall time\nstatic: {} load steps, {} halved, {} iterations\n",
       s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
       s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
-  for (const auto& step : s["static"])
-    out += fmt::format("load factor {}: {}{}\n", text(step["factor"], "{:.6g}"),
-                       step["converged"].get<bool>() ? "converged"
-                       : s["status"] == "stopped"    ? "not stable, the path ends"
-                                                     : "no equilibrium near the last one",
-                       loss_in_words(step));
+  const ordered_json& steps = s["static"];
+  for (std::size_t k = 0; k < steps.size();) {
+    const ordered_json& first = steps[k];
+    std::size_t end = k + 1;  // of those of which the same is to be said
+    while (end < steps.size() &&
+           std::ranges::all_of(std::array{"converged", "loss", "negative_pivots"},
+                               [&](const char* key) { return steps[end][key] == first[key]; }))
+      ++end;
+    out += "load factor " + text(first["factor"], "{:.6g}");
+    if (end > k + 1)
+      out += fmt::format(" to {} in {} steps", text(steps[end - 1]["factor"], "{:.6g}"), end - k);
+    out += fmt::format(": {}{}\n",
+                       first["converged"].get<bool>() ? "converged"
+                       : s["status"] == "stopped"     ? "not stable, the path ends"
+                                                      : "no equilibrium near the last one",
+                       loss_in_words(first));
+    k = end;
+  }
   const auto stable = [](const ordered_json& step) { return step["stable"] == true; };
-  if (!s["static"].empty() && std::ranges::all_of(s["static"], stable))
+  if (!steps.empty() && std::ranges::all_of(steps, stable))
     out += s["status"] == "diverged" ? "stable at every load factor up to there\n"
                                      : "stable at every load factor\n";
   return out + "\n";

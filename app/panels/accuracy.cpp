@@ -1,5 +1,8 @@
 #include "app/panels/accuracy.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
 
@@ -34,6 +37,11 @@ void work(const Setup& setup, Accuracy& background) {
   if (!background.stopped()) background.show(std::move(found));
 }
 
+/// To whole `unit`s, at least one: an error is not shown as none.
+double rounded_up(double error, double unit) {
+  return std::max(1., std::ceil(error / unit)) * unit;
+}
+
 }  // namespace
 
 std::unique_ptr<Accuracy> estimate_accuracy(const Setup& setup) {
@@ -50,11 +58,11 @@ std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyRes
     if (!error.same_verdict())
       lines.push_back(say(k_unsure, name));
     else if (error.overturned)
-      lines.push_back(
-          say(k_sure_fall, name, error.overturn_time.value_or(0), error.overturn_error.value_or(0)));
+      lines.push_back(say(k_sure_fall, name, error.overturn_time.value_or(0),
+                          rounded_up(error.overturn_error.value_or(0), 1e-3)));
     else
       lines.push_back(say(k_sure_stay, name, result.bodies[b].peak_tilt * k_degrees,
-                          error.peak_tilt_error.value_or(0) * k_degrees));
+                          rounded_up(error.peak_tilt_error.value_or(0) * k_degrees, 0.01)));
   }
   return lines;
 }

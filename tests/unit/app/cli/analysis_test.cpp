@@ -35,6 +35,8 @@ TEST_F(AnalysisTest, static_run_reports_and_records_each_load_step) {
   }
   const Json r = Json::parse(topple({"info", "push.h5", "--json", "-"}).out);
   EXPECT_EQ(r["frames"], 5);  // the unloaded one first
+  EXPECT_NE(topple({"run", "push.toml", "--quiet"}).out.find("load factor 0.25 to 1 in 4 steps: converged\n"),
+            std::string::npos);
 }
 
 TEST_F(AnalysisTest, static_run_that_is_to_end_at_an_instability_ends_there_and_keeps_what_converged) {
