@@ -90,7 +90,7 @@ nlohmann::ordered_json estimate(const io::Scene& scene, const Run& run, std::opt
 void warn_of_open_verdicts(const nlohmann::ordered_json& error, nlohmann::ordered_json& warnings) {
   if (!error.contains("disagreements")) return;
   for (const auto& line : error["disagreements"])
-    warnings.push_back("the verdict depends on the step: " + line.get<std::string>() +
+    warnings.push_back("a finer run takes another course: " + line.get<std::string>() +
                        "; the share of many runs says more than one (study overturn --ensemble)");
 }
 

@@ -280,8 +280,8 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
 }
 
 std::string refinement_in_words(const Setup& setup) {
-  return setup.parameters.adaptive ? fmt::format("tolerance divided by {:g}", study::k_finer_tolerance)
-                                   : "step halved";
+  const bool by_tolerance = setup.parameters.adaptive && !traits(setup.parameters.integrator).is_explicit;
+  return by_tolerance ? fmt::format("tolerance divided by {:g}", study::k_finer_tolerance) : "step halved";
 }
 
 ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcome& finer) {

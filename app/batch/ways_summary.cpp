@@ -73,6 +73,17 @@ std::string hits_in_words(const ordered_json& way) {
   return hits;
 }
 
+namespace {
+
+/// Of two that are closed.
+bool is_same(const ordered_json& way, const ordered_json& before) {
+  constexpr double k_millimetre = 1e-3;
+  return way["caught"] == before["caught"] &&
+         std::abs(way["widest_m"].get<double>() - before["widest_m"].get<double>()) < k_millimetre;
+}
+
+}  // namespace
+
 std::string ways_in_words(const ordered_json& ways, double person) {
   std::string out;
   for (const auto& way : ways) {
@@ -93,7 +104,7 @@ std::string ways_in_words(const ordered_json& ways, double person) {
           way["blocked_by"].empty() ? ": the door is narrower" : ", blocked by " + joined(way["blocked_by"]);
     }
     if (way["open"] == false && way.contains("before") && way["before"]["open"] == false)
-      out += ", as before the shake";
+      out += is_same(way, way["before"]) ? ", as before the shake" : ", closed before the shake, too";
     const std::string hits = hits_in_words(way);
     out += (hits.empty() ? "" : "; hit by " + hits) + "\n";
   }

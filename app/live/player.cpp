@@ -410,12 +410,8 @@ const Stability* Player::stability(const io::FrameRow& row) const {
 }
 
 std::vector<io::RecordedEvent> Player::events() const {
-  std::vector<io::RecordedEvent> found;
-  if (history_.branches.empty()) return found;
-  for (const Stretch& stretch : history_.way_to(shown_))
-    for (const io::RecordedEvent& event : events_)
-      if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
-  return found;
+  if (history_.branches.empty()) return {};
+  return io::events_on(history_.way_to(shown_), events_);
 }
 
 std::vector<LoggedEdit> Player::edits() const {

@@ -18,7 +18,7 @@ using namespace window_words;
 
 const Phrase& verdict(const CriteriaLimits& limits, const ShakePlace& at) {
   if (at.amplitude < limits.west) return k_stays;
-  return at.amplitude < 2 * k_pi * at.frequency * limits.ishiyama ? k_rocks : k_may_overturn;
+  return at.velocity() < limits.ishiyama ? k_rocks : k_may_overturn;
 }
 
 namespace {
@@ -106,6 +106,15 @@ bool was_changed(const Player& player) {
   });
 }
 
+/// Something that holds it was changed.
+bool was_fixed_otherwise(const Player& player, int body) {
+  const Model& model = player.scene().setup.model;
+  return std::ranges::any_of(player.edits(), [&](const LoggedEdit& edit) {
+    return traits(edit.edit.key).of == Edit::Of::anchor && edit.time <= player.time() &&
+           study::holds(model, model.anchors[static_cast<std::size_t>(edit.edit.index)], body);
+  });
+}
+
 /// By another body, in a recorded frame up to the instant that is shown.
 bool was_touched(const Player& player, int body) {
   const Body& own = player.scene().setup.model.bodies[static_cast<std::size_t>(body)];
@@ -129,7 +138,7 @@ std::string difference_in_words(const Player& player, int body, const CriteriaLi
   }
   const std::string& name = player.scene().setup.model.bodies[static_cast<std::size_t>(body)].name;
   const bool soft = limits.west < limits.rigid;
-  if (soft && &said != &k_stays && !lifted &&
+  if (soft && &said != &k_stays && !lifted && !was_fixed_otherwise(player, body) &&
       player.time() >= shaken_since(player) + k_swings / shake.frequency)
     return say(k_has_not_lifted, name);
   if (&said == &k_may_overturn || !(overturned || (lifted && &said == &k_stays))) return "";

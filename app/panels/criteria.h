@@ -1,6 +1,7 @@
 // What West's and Ishiyama's criteria say of a body of the scene as it is now, and where the run differs.
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 
@@ -12,6 +13,9 @@ namespace topple::app {
 /// A shake on the diagram. Of a record the frequency at which a sine has its peak acceleration and velocity.
 struct ShakePlace {
   double frequency, amplitude;  ///< Hz, m/s^2
+  double share =
+      0.5 * std::numbers::inv_pi;  ///< velocity that it gives the floor, over amplitude times period
+  double velocity() const { return amplitude * share / frequency; }  ///< m/s
 };
 
 /// Of one body, towards the side that tips first.

@@ -43,9 +43,11 @@ RecordPeak peak_along(const Accelerogram& record, const Vec3& direction) {
 ShakePlace place_of(const Shake& shake) {
   const Vec3 along(shake.direction.x(), shake.direction.y(), 0);
   const ShakeTraits& uses = traits(shake.kind);
-  if (!uses.has_record)
-    return {uses.has_shape ? traits(shake.shape).cycles / shake.duration : shake.frequency,
-            along.norm() * shake.amplitude};
+  if (uses.has_shape) {
+    const PulseTraits& shape = traits(shake.shape);
+    return {shape.cycles / shake.duration, along.norm() * shake.amplitude, shape.velocity * shape.cycles};
+  }
+  if (!uses.has_record) return {shake.frequency, along.norm() * shake.amplitude};
   const RecordPeak peak = peak_along(*shake.record, along.stableNormalized());
   return {peak.velocity > 0 ? peak.acceleration / (2 * k_pi * peak.velocity) : k_frequencies.high,
           std::abs(shake.scale) * peak.acceleration};
@@ -70,7 +72,8 @@ void draw_criteria_chart(const CriteriaLimits& limits, const TeachingState& stat
   draw_log_grid(list, chart);
   list.PushClipRect({chart.left, chart.top}, {chart.right, chart.bottom}, true);
   const double west = limits.west / k_gal;
-  const auto velocity_line = [&](double frequency) { return 2 * k_pi * frequency * limits.ishiyama / k_gal; };
+  const double share = state.path.back().share;
+  const auto velocity_line = [&](double frequency) { return frequency * limits.ishiyama / share / k_gal; };
   const std::vector<LogCurve> curves{
       {say(k_west), theme().positive, 0, {chart.at(chart.x.low, west), chart.at(chart.x.high, west)}},
       {say(k_ishiyama),
@@ -158,8 +161,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const std::string held = held_in_words(player, *state.body);
   const std::string words = held.empty() ? difference_in_words(player, *state.body, limits, now) : held;
   if (!words.empty()) write(words);
-  write(say(k_limits, limits.west / k_gal, 100 * limits.ishiyama,
-            100 * now.amplitude / (2 * k_pi * now.frequency)));
+  write(say(k_limits, limits.west / k_gal, 100 * limits.ishiyama, 100 * now.velocity()));
   write((limits.west < limits.rigid ? say(k_soft_limits) : "") +
         say(k_west_formula, limits.rigid / k_gal, 1e3 * limits.base, 1e3 * limits.height));
 }

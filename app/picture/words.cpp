@@ -81,7 +81,10 @@ constexpr ShakeWords k_shake_words[] = {
     {Shake::Kind::pulse, [](const Shake& s) { return say(k_floor_pulse, s.duration, s.amplitude / k_gal); }},
     {Shake::Kind::record,
      [](const Shake& s) {
-       return say(k_floor_record, s.record->duration, std::abs(s.scale) * s.record->peak / k_gal);
+       const double peak = std::abs(s.scale) * s.record->peak / k_gal;
+       const bool since = s.ramp.over > 0 && s.ramp.since > s.start;
+       return since ? say(k_floor_record_since, s.record->duration, peak, s.ramp.since)
+                    : say(k_floor_record, s.record->duration, peak);
      }},
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "app/report/report_parts.h"
+#include "solver/frame/integrator.h"
 #include "solver/study/common/refinement.h"
 
 namespace topple::app {
@@ -118,9 +119,12 @@ std::string error(const ReportPage& page) {
   const ordered_json& estimate = page.report().summary["error_estimate"];
   const Parameters& p = page.report().scene->setup.parameters;
   std::string out = "<h3>" + page.say(words::k_error) + "</h3>\n";
+  const bool by_tolerance = p.adaptive && !traits(p.integrator).is_explicit;
   const std::string how =
-      p.adaptive ? page.text(words::k_tightened, short_shown(p.tolerance / study::k_finer_tolerance))
-                 : page.text(words::k_halved, short_shown(1e3 * p.time_step / study::k_finer_step));
+      by_tolerance
+          ? page.text(words::k_tightened, short_shown(p.tolerance / study::k_finer_tolerance))
+          : page.text(words::k_halved, short_shown(1e3 * page.report().summary["time_step_s"].get<double>() /
+                                                   study::k_finer_step));
   out += page.paragraph(
       page.say(words::k_error_text, how, page.falling_section(), short_shown(study::k_error_of_difference)));
   if (estimate.contains("failed"))

@@ -51,7 +51,8 @@ inline constexpr Phrase k_sensitive{
     "single run.",
     "この結果は揺れのわずかな違いで変わる。1回の計算結果ではなく、第{0}節の確率で判断すること。"};
 inline constexpr Phrase k_open{
-    "A finer computation takes another course (section {0}); the single run decides nothing.",
+    "A finer computation takes another course (section {0}): this one run does not settle when, or whether, "
+    "it falls.",
     "計算の刻みを細かくすると経過が変わる（第{0}節）。1回の計算結果だけでは判断できない。"};
 inline constexpr Phrase k_not_validated{
     "Not validated against experiment. The program is checked against theory and published numbers "

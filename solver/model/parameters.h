@@ -115,8 +115,8 @@ struct Parameters {
   double time_step = 1e-3;          ///< s, fixed step
   bool adaptive = false;            ///< the step follows `tolerance` instead (step_control.h)
   double tolerance = 1e-3;          ///< of the adaptive step, relative to the speed (step_control.h)
-  /// Explicit substeps of rigid and elastic bodies (reduced_body.h) are this many times shorter than
-  /// stability asks for.
+  /// Explicit substeps of rigid and elastic bodies (reduced_body.h) and of frames, and the steps of adaptive
+  /// central differences, are this many times shorter than stability asks for.
   double substep_refinement = 1;
   /// A step of fixed length at which a frame loses energy in a contact is taken again in parts
   /// (step.h). False: what a study of the steps themselves asks for.

@@ -36,7 +36,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
   const bool by_limit = w.explicit_limit.has_value();  // no frame, no limit: bodies bound their errors
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
-  h = by_limit ? k_explicit_share * w.explicit_limit->step
+  h = by_limit ? k_explicit_share * w.explicit_limit->step / parameters.substep_refinement
                : std::min(h, w.parts.time_limit(parameters, state));
   h = fit(h, left);
   StepStatus status;
@@ -60,7 +60,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
     }
     if (status.kind == StepStatus::Kind::step_too_long) {  // a body becomes a frame
       ++rejected;
-      h = k_explicit_share * status.limit;
+      h = k_explicit_share * status.limit / parameters.substep_refinement;
       continue;
     }
     if (by_limit || h < 2 * k_least_step) {

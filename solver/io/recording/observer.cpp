@@ -253,9 +253,22 @@ void Observer::add_checkpoint(const Run& run, Observation& out) {
   last_checkpoint_ = state.step;
 }
 
+std::vector<RecordedEvent> events_on(const std::vector<Stretch>& way, const std::vector<RecordedEvent>& all) {
+  std::vector<RecordedEvent> found;
+  for (const Stretch& stretch : way)
+    for (const RecordedEvent& event : all)
+      if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
+  std::int32_t starts = -1;
+  for (const RecordedEvent& event : found)
+    if (event.step == 0) starts = event.branch;
+  std::erase_if(found, [&](const RecordedEvent& event) { return event.step == 0 && event.branch != starts; });
+  return found;
+}
+
 void Observer::add_events(const Run& run, Observation& out) {
   const std::vector<Event>& events = run.events();
-  if (!begun_ && branch_ != 0) events_seen_ = events.size();
+  // a branch of the start has a start of its own
+  if (!begun_ && branch_ != 0 && run.step() > 0) events_seen_ = events.size();
   begun_ = true;
   for (; events_seen_ < events.size(); ++events_seen_) {
     const Event& event = events[events_seen_];

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/io/recording/frame_row.h"
+#include "solver/run/history.h"
 #include "solver/run/run.h"
 
 namespace topple::io {
@@ -29,6 +30,10 @@ struct RecordedEvent {
   double time;  ///< s
   Event event;
 };
+
+/// Those of `all` on a way (History::way_to). Of a start that branches share, those of the newest that has
+/// any.
+std::vector<RecordedEvent> events_on(const std::vector<Stretch>& way, const std::vector<RecordedEvent>& all);
 
 /// What a recording takes of one step of a run.
 struct Observation {

@@ -517,12 +517,7 @@ std::vector<std::int64_t> Recording::frames_on_way_to(std::int32_t branch) const
 }
 
 std::vector<RecordedEvent> Recording::events_on_way_to(std::int32_t branch) const {
-  const std::vector<RecordedEvent> all = events();
-  std::vector<RecordedEvent> found;
-  for (const Stretch& stretch : impl_->history.way_to(branch))
-    for (const RecordedEvent& event : all)
-      if (event.branch == stretch.branch && event.step <= stretch.last_step) found.push_back(event);
-  return found;
+  return events_on(impl_->history.way_to(branch), events());
 }
 
 void expect_to_go_on(const Recording& recording) {

@@ -440,7 +440,7 @@ TEST(Observer, gives_the_last_state_once) {
 TEST(Observer, of_a_branch_begins_with_a_row_and_a_checkpoint_but_without_its_parents_events) {
   const Scene scene = parse_scene(k_scene, "test");
   topple::Run run(scene.setup);
-  while (run.events().empty()) ASSERT_TRUE(run.advance().ok());
+  while (run.events().empty() || run.step() == 0) ASSERT_TRUE(run.advance().ok());
   Observer root, branch(1);
   EXPECT_EQ(root.observe(run).events.size(), run.events().size());
   const Observation first = branch.observe(run);
@@ -452,6 +452,24 @@ TEST(Observer, of_a_branch_begins_with_a_row_and_a_checkpoint_but_without_its_pa
     EXPECT_EQ(branch.observe(run).events.size(), run.events().size() - before);
   }
   EXPECT_GT(run.events().size(), before);
+}
+
+// Branches of the start have starts of their own, with other parameters than those of their parents.
+TEST(Observer, of_a_branch_of_the_start_has_the_events_of_its_own_start) {
+  const Scene scene = parse_scene(k_scene, "test");
+  const topple::Run run(scene.setup);
+  ASSERT_FALSE(run.events().empty());
+  EXPECT_EQ(Observer(1).observe(run).events.size(), run.events().size());
+  const std::vector<Stretch> way{{0, 0}, {1, 100}};
+  const RecordedEvent parents{.branch = 0, .step = 0, .time = 0, .event = {}}, own{1, 0, 0, {}},
+      later{1, 5, 0, {}};
+  const auto branches = [&](const std::vector<RecordedEvent>& all) {
+    std::vector<std::int32_t> out;
+    for (const RecordedEvent& event : events_on(way, all)) out.push_back(event.branch);
+    return out;
+  };
+  EXPECT_EQ(branches({parents, own, later}), (std::vector<std::int32_t>{1, 1}));
+  EXPECT_EQ(branches({parents, later}), (std::vector<std::int32_t>{0, 1}));  // of recordings from before
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/batch/ways_summary.h"
 #include "app/support/terms.h"
 #include "unit/app/scenes.h"
 
@@ -355,6 +356,18 @@ TEST(Summary, says_who_gets_out_before_and_after) {
   EXPECT_NE(summary_table(open).find("place desk: way to door open, 0.51 m wide, 3.0 m long\n"),
             std::string::npos)
       << summary_table(open);
+}
+
+TEST(Ways, what_was_closed_before_is_told_as_the_same_where_it_is) {
+  Json way{{"place", "desk"},         {"door", "door"},
+           {"open", false},           {"widest_m", 0.45},
+           {"caught", false},         {"blocked_by", {"a"}},
+           {"hit_by", Json::array()}, {"before", {{"open", false}, {"widest_m", 0.45}, {"caught", false}}}};
+  EXPECT_NE(ways_in_words(Json{way}, 0.5).find(", as before the shake"), std::string::npos);
+  way["caught"] = true;
+  way["widest_m"] = 0.;
+  EXPECT_EQ(ways_in_words(Json{way}, 0.5),
+            "place desk: cannot leave, a is where they are, closed before the shake, too\n");
 }
 
 TEST(Letters, a_letter_of_several_bytes_is_one_and_so_is_a_byte_that_is_none) {

@@ -73,6 +73,9 @@ TEST_F(CriteriaTest, a_cabinet_that_fell_is_never_said_to_stay_without_a_reason)
   const ShakePlace shake{0.5, 100 * k_gal}, turned_down{0.5, 90 * k_gal};
   EXPECT_EQ(verdict(limits(), shake).english, window_words::k_may_overturn.english);
   EXPECT_EQ(verdict(limits(), turned_down).english, window_words::k_stays.english);
+  // a pulse of one full sine gives the floor twice the velocity of a steady one
+  EXPECT_DOUBLE_EQ((ShakePlace{1.25, 1.6, std::numbers::inv_pi}.velocity()),
+                   2 * (ShakePlace{1.25, 1.6}.velocity()));
   EXPECT_EQ(difference_in_words(*player_, 0, limits(), turned_down), "");  // nothing has happened yet
   player_->play();
   ASSERT_TRUE(until([&] {
