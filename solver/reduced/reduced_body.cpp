@@ -465,11 +465,41 @@ void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>&
     sections[body.first_element + e] = {section_.segment<3>(6 * e), section_.segment<3>(6 * e + 3)};
 }
 
+// Contacts give by their own forces alone, but those of the others move them too: the rigid motion by which
+// they come nearest to bearing what they bear. u: six numbers per node, m and rad, along the body.
+void ReducedBody::add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u) const {
+  const Body& body = model_.bodies[body_];
+  const Mat3 back = s.rotation.conjugate().toRotationMatrix();
+  const auto arm = [&](int i) -> Vec3 {
+    return model_.node_position[body.first_node + i] - body.centre_of_gravity;
+  };
+  std::vector<Eigen::Matrix<double, 1, 6>> ways;
+  std::vector<double> left;
+  contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
+    const int i = model_.contact_points[point].node - body.first_node;
+    const Vec3 normal = back * model_.planes[touch.plane].normal;
+    ways.emplace_back();
+    ways.back() << normal.transpose(), arm(i).cross(normal).transpose() / reach_;
+    left.push_back(touch.give[k] * touch.conservative[k] - normal.dot(u.segment<3>(6 * i)));
+  });
+  if (ways.empty()) return;
+  Eigen::MatrixXd along(ways.size(), 6);
+  for (std::size_t k = 0; k < ways.size(); ++k) along.row(k) = ways[k];
+  const Eigen::VectorXd motion = along.completeOrthogonalDecomposition().solve(
+      Eigen::Map<const Eigen::VectorXd>(left.data(), left.size()));
+  const Vec3 shift = motion.head<3>(), turn = motion.tail<3>() / reach_;
+  for (int i = 0; i < body.node_count; ++i) {
+    u.segment<3>(6 * i) += shift + turn.cross(arm(i));
+    u.segment<3>(6 * i + 3) += turn;
+  }
+}
+
 void ReducedBody::add_residual(const BodyState& s, State& state) const {
   if (s.level != ModelLevel::elastic) return;
   const Body& body = model_.bodies[body_];
   Eigen::VectorXd u = Eigen::VectorXd::Zero(6 * body.node_count);
   each_force(s, [&](int node, const Vec3& f) { u += basis_->residual_shape.middleCols<3>(3 * node) * f; });
+  add_motion_of_contacts(s, u);
   for (int i = 0; i < body.node_count; ++i) {
     state.position[body.first_node + i] += s.rotation * Vec3(u.segment<3>(6 * i));
     Quat& q = state.rotation[body.first_node + i];

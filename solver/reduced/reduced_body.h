@@ -152,6 +152,7 @@ class ReducedBody {
   bool known(const StepInputs& now, const BodyState& s) const;
   template <class F>
   void each_force(const BodyState& s, F f) const;
+  void add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u) const;
 
   Solution solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
                           ContactLoads& loads, Amplitudes& load, ReducedScratch& w);
