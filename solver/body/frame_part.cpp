@@ -15,7 +15,7 @@ namespace topple {
 namespace {
 
 constexpr double k_explicit_share = 0.9;  // of the greatest stable substep
-constexpr int k_most_substeps = 7;        // cost what an implicit step does (frame_bench)
+constexpr int k_most_substeps = 7;        // cost half of what an implicit step does
 
 // Mean rotation of a body's nodes, of which `first` is the first one, rad/s.
 double spin(const Body& body, const BodyMotion& motion, int first) {

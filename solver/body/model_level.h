@@ -25,10 +25,10 @@
 //
 // Up from a planar block: it sinks into the springs of its contacts so far that they bear what the floor
 // bore. Up: nodes are placed where the modes, and what loads add to them statically, put them, and moved
-// rigidly to where contacts bear what they bore. Down: the
-// rigid motion that has the nodes' momentum, at their best fit, and the amplitudes of the modes in what is
-// left. Linear momentum stays to rounding, angular momentum to the square of the deformation over the body's
-// size; the change of energy is booked as EnergyLedger::model_switch.
+// rigidly to where contacts bear what they bore. Down: the rigid motion that has the nodes' momentum, at
+// their best fit, and the amplitudes of the modes in what is left. Linear momentum stays to rounding, angular
+// momentum to the square of the deformation over the body's size; the change of energy is booked as
+// EnergyLedger::model_switch.
 #pragma once
 
 #include <span>

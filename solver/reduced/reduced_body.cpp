@@ -465,8 +465,9 @@ void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>&
     sections[body.first_element + e] = {section_.segment<3>(6 * e), section_.segment<3>(6 * e + 3)};
 }
 
-// Contacts give by their own forces alone, but those of the others move them too: the rigid motion by which
-// they come nearest to bearing what they bear. u: six numbers per node, m and rad, along the body.
+// A contact point of an elastic body gives by its own force alone, a node of a frame by all of them. Adds the
+// rigid motion after which the nodes are as near as can be to where contacts bear what they bear now. u: six
+// numbers per node, m and rad, body axes.
 void ReducedBody::add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u) const {
   const Body& body = model_.bodies[body_];
   const Mat3 back = s.rotation.conjugate().toRotationMatrix();
