@@ -106,8 +106,8 @@ void warn_of_few_elements(const Run& run, Warnings& list) {
   const int enough = 2 * static_cast<int>(std::ceil(worst->element_count * k_good / fewest / 2));
   list.push_back(fmt::format(
       "member \"{}\" of \"{}\" bears {:.4g} kN on {} elements, {:.1f} in a half wave of the line that "
-      "buckles under it: it bends too little, buckles at 10 % more than in theory with 4, at more than twice "
-      "with 2, with fewer not at all; elements = {} is within 2.4 %",
+      "buckles under it: it bends too little, buckles at 10 % more than in theory with 4, at up to 2.3 times "
+      "that with 2, with fewer later or not at all; elements = {} is within 2.4 %",
       worst->name, model.bodies[worst->body].name, borne / 1e3, worst->element_count, fewest, enough));
 }
 

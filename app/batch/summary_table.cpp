@@ -19,6 +19,7 @@
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
 #include "solver/planar/planar_case.h"
+#include "solver/study/common/refinement.h"
 
 namespace topple::app {
 namespace {
@@ -32,7 +33,7 @@ std::string text(const ordered_json& value, const char* format) {
 }
 
 /// The line about `error_estimate`.
-std::string estimate_in_words(const ordered_json& e) {
+std::string estimate_in_words(const ordered_json& e, bool has_stress) {
   const std::string begin = fmt::format("error of the time integration ({}): ", e["how"].get<std::string>());
   if (e.contains("failed"))
     return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
@@ -42,16 +43,20 @@ std::string estimate_in_words(const ordered_json& e) {
       words += (words.empty() ? "" : "; ") + line.get<std::string>();
     return begin + "the verdict itself is open: " + words + "\n";
   }
-  const auto part = [&](const char* name, const char* key, double scale, const char* unit) {
-    return e[key].is_null() ? "" : fmt::format("{} {:.2g} {}, ", name, scale * e[key].get<double>(), unit);
+  const auto part = [&](const char* name, const char* key, double scale, const char* unit, double least) {
+    if (e[key].is_null()) return std::string();
+    const double error = e[key].get<double>();
+    return fmt::format("{} {}{:.2g} {}, ", name, error > (1 + 1e-9) * least ? "" : "less than ",
+                       scale * error, unit);
   };
-  std::string words =
-      part("overturning", "overturn_time_s", 1, "s") + part("peak tilt", "peak_tilt_deg", 1, "deg") +
-      part("slide", "peak_slide_m", 1e3, "mm") + part("peak stress", "peak_stress_Pa", 1e-6, "MPa");
+  std::string words = part("overturning", "overturn_time_s", 1, "s", study::k_least_time_error) +
+                      part("peak tilt", "peak_tilt_deg", 1, "deg", study::k_least_tilt_error * k_degrees) +
+                      part("slide", "peak_slide_m", 1e3, "mm", study::k_least_slide_error) +
+                      part("peak stress", "peak_stress_Pa", 1e-6, "MPa", 0);
   words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
   const bool fell = std::ranges::any_of(
       e["bodies"], [](const ordered_json& body) { return !body["overturn_time_s"].is_null(); });
-  if (fell) words += "; of the stress of a landing it is unknown";
+  if (fell && has_stress) words += "; of the stress of a landing it is unknown";
   return begin + words + "\n";
 }
 
@@ -135,10 +140,10 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
   const std::string bounds =
-      may_strike                       ? " until it strikes something, from which a frame springs back"
-      : body["impacts"].get<int>() > 0 ? " until it first lands, however lightly, or leans by half of its "
-                                         "critical angle; both enlarge that"
-      : !body["first_beyond_critical_s"].is_null() ? " until it leans by half of its critical angle"
+      may_strike
+          ? " until it lifts; leaning and striking something, from which a frame springs back, enlarge that"
+      : body["impacts"].get<int>() > 0             ? " until it lifts; leaning and landing enlarge that"
+      : !body["first_beyond_critical_s"].is_null() ? " until it lifts; leaning enlarges that"
                                                    : "";
   const double error = estimate.get<double>();
   const std::string off =
@@ -338,7 +343,10 @@ std::string summary_table(const ordered_json& s) {
   for (const auto& a : s["anchors"]) out += anchor_line(a, when);
   for (const auto& w : s["wedges"]) out += wedge_line(w) + "\n";
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
-    out += estimate_in_words(s["error_estimate"]);
+    out +=
+        estimate_in_words(s["error_estimate"], std::ranges::any_of(s["bodies"], [](const ordered_json& body) {
+                            return !body["peak_stress_Pa"].is_null();
+                          }));
   if (s.contains("ways")) out += ways_in_words(s["ways"], s["person_m"].get<double>());
   for (const auto& p : s["probes"]) {
     const auto& d = p["final"]["displacement_m"];

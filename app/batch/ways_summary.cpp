@@ -92,9 +92,10 @@ std::string ways_in_words(const ordered_json& ways, double person) {
     if (way["open"].is_null()) {
       out += "there is no door";
     } else if (way["open"].get<bool>()) {
-      out += fmt::format("way to {} open, {:.2f} m wide", way["door"].get<std::string>(),
+      out += fmt::format("way to {} open, widest {:.2f} m", way["door"].get<std::string>(),
                          way["widest_m"].get<double>());
-      if (!way["length_m"].is_null()) out += fmt::format(", {:.1f} m long", way["length_m"].get<double>());
+      if (!way["length_m"].is_null())
+        out += fmt::format(", shortest {:.1f} m long", way["length_m"].get<double>());
     } else if (way["caught"].get<bool>()) {
       out += "cannot leave, " + joined(way["blocked_by"]) + " is where they are";
     } else {

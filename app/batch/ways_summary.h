@@ -18,7 +18,8 @@ nlohmann::ordered_json ways_json(const Room& room, const Model& model, std::span
 /// The same of a run, with "before": as it began.
 nlohmann::ordered_json ways_json(const Run& run);
 
-/// A line per place: "place desk: way to door open, 0.62 m wide, 4.1 m long; hit by shelf at 2.31 s".
+/// A line per place: "place desk: way to door open, widest 0.62 m, shortest 4.1 m long; hit by shelf at 2.31
+/// s".
 /// person: m.
 std::string ways_in_words(const nlohmann::ordered_json& ways, double person);
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
@@ -43,27 +44,32 @@ void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows,
     points.clear();
   };
   list.PushClipRect({lane.left, lane.top - 1}, {lane.right, lane.bottom + 1}, true);
-  for (std::size_t i = 0; i < rows.size();) {
-    if (std::isnan(value(i))) {
+  // of the pixel column that is being gone through
+  struct {
+    float from, to;  // px
+    double first, last, least, greatest;
+  } column{};
+  bool any = false;
+  const auto end_column = [&] {
+    if (!std::exchange(any, false)) return;
+    const bool rises = column.last >= column.first;
+    points.emplace_back(column.from, lane.y(rises ? column.least : column.greatest));
+    if (column.least != column.greatest)
+      points.emplace_back(column.to, lane.y(rises ? column.greatest : column.least));
+  };
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const double v = value(i);
+    const float x = lane.x(rows[i]->time);
+    if (any && (std::isnan(v) || std::floor(x) != std::floor(column.from))) end_column();
+    if (std::isnan(v)) {
       draw();
-      ++i;
       continue;
     }
-    const float column = std::floor(lane.x(rows[i]->time));
-    double least = 1e300, greatest = -1e300;
-    std::size_t next = i;
-    for (; next < rows.size() && std::floor(lane.x(rows[next]->time)) == column; ++next) {
-      const double v = value(next);
-      if (std::isnan(v)) break;
-      least = std::min(least, v);
-      greatest = std::max(greatest, v);
-    }
-    const bool rises = value(next - 1) >= value(i);
-    points.emplace_back(lane.x(rows[i]->time), lane.y(rises ? least : greatest));
-    if (least != greatest)
-      points.emplace_back(lane.x(rows[next - 1]->time), lane.y(rises ? greatest : least));
-    i = next;
+    if (!std::exchange(any, true)) column = {x, x, v, v, v, v};
+    column.to = x, column.last = v;
+    column.least = std::min(column.least, v), column.greatest = std::max(column.greatest, v);
   }
+  end_column();
   draw();
   list.PopClipRect();
 }

@@ -31,6 +31,9 @@ std::vector<ImVec2> without_straight_points(std::span<const ImVec2> points, floa
 /// Value at the row of that index; not finite: none.
 using ValueAt = std::function<double(std::size_t)>;
 
+/// Of curves, px. Whole ones: others are made of three times as many triangles.
+inline constexpr float k_thin_curve = 1, k_thick_curve = 2;
+
 /// Draws at most the least and greatest value of each pixel column, with gaps where there is none.
 void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows, const ValueAt& value,
                ImU32 colour, float thickness);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/batch/summary.h"
+#include "app/page/outcome_json.h"
 #include "app/page/page_rows.h"
 #include "app/page/page_template.h"
 #include "app/page/page_words.h"
@@ -100,17 +101,16 @@ std::vector<BodyEnd> ends_of(const Json& summary, std::vector<BodyEnd> rows) {
   return rows;
 }
 
-Json json_of(const std::vector<BodyEnd>& ends) {
-  const auto number = [](const std::optional<double>& x) {
-    return x && std::isfinite(*x) ? Json(*x) : Json(nullptr);
-  };
-  Json list = Json::array();
-  for (const BodyEnd& end : ends)
-    list.push_back({{"name", end.name},
-                    {"overturn_time_s", number(end.overturned)},
-                    {"peak_tilt_deg", number(end.peak_tilt)},
-                    {"critical_tilt_deg", number(end.critical)}});
-  return list;
+/// Likewise.
+std::vector<PlaceOutcome> hits_of(const Json& summary, const Model& model, const PageRows& rows) {
+  if (!summary.contains("ways")) return rows.extent.hits;
+  std::vector<PlaceOutcome> out(summary["ways"].size());
+  for (std::size_t p = 0; p < out.size(); ++p)
+    for (const Json& hit : summary["ways"][p]["hit_by"])
+      for (int b = 0; b < model.furniture_total(); ++b)
+        if (model.bodies[static_cast<std::size_t>(b)].name == hit["body"])
+          out[p].hits.push_back({b, hit["time_s"].get<double>()});
+  return out;
 }
 
 /// Pictures with captions of the beginning, the greatest tilt and the end. Empty where nothing can draw.
@@ -170,7 +170,7 @@ std::string estimate_of(const ReplayOnly& only) {
 }
 
 Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<BodyEnd>& ends,
-               const ReplayOnly& only, Language language) {
+               const std::vector<PlaceOutcome>& hits, const ReplayOnly& only, Language language) {
   Json files = Json::array();
   for (const io::SceneFile& file : scene.files)
     files.push_back({{"name", file.name}, {"base64", base64(file.bytes)}});
@@ -179,7 +179,8 @@ Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<B
           {"files", files},
           {"rows", base64(pack_rows(rows.kept))},
           {"stride", rows.stride},
-          {"bodies", json_of(ends)},
+          {"bodies", ends_json(ends)},
+          {"hits", hits_json(hits)},
           {"live", only.word.empty()},
           {"reason", only.word},
           {"estimate_s", estimate_of(only)},
@@ -223,7 +224,9 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
                     const std::function<bool()>& proceed) {
   const std::optional<PageRows> rows = rows_of(scene, run, proceed);
   if (!rows) return "";
-  const std::vector<BodyEnd> ends = ends_of(summary_of(run), rows->ends);
+  const Json summary = summary_of(run);
+  const std::vector<BodyEnd> ends = ends_of(summary, rows->ends);
+  const std::vector<PlaceOutcome> hits = hits_of(summary, scene.setup.model, *rows);
   const ReplayOnly only = why_replay_only(scene, run);
   std::string title = scene.title.empty() ? scene.name : scene.title;
   if (run.edited && !title.ends_with(io::k_title_changed))
@@ -238,7 +241,7 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
         only.word.empty() ? "" : escaped(say_in(language, phrase_named(only.word), estimate_of(only)))},
        {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
        {"@VERSION@", TOPPLE_VERSION},
-       {"@DATA@", script_json(page_data(scene, *rows, ends, only, language))}});
+       {"@DATA@", script_json(page_data(scene, *rows, ends, hits, only, language))}});
 }
 
 std::string in_frame(const std::string& page, const std::string& title, int height) {

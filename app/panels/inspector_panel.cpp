@@ -212,7 +212,7 @@ void draw_history(const Inspected& at, const Subject& subject, std::size_t value
                what.unit));
   if (most > least)
     add_curve(
-        list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, 1.4f);
+        list, lane, at.player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, k_thick_curve);
   list.AddLine({lane.x(at.player.time()), lane.top}, {lane.x(at.player.time()), lane.bottom}, theme().cursor,
                1.5f);
   ImGui::Dummy({width, height});

@@ -34,7 +34,7 @@ void draw_lane(ImDrawList& list, const Player& player, Histories& histories, con
   list.AddRectFilled({lane.left, lane.top}, {lane.right, lane.bottom}, theme().sheet);
   list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
   add_curve(
-      list, lane, player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, 1.4f);
+      list, lane, player.way(), [&](std::size_t i) { return samples[i]; }, theme().line, k_thick_curve);
   if (greatest > 0) add_text(list, lane.left + 4, lane.top + 1, theme().quiet, value_text(greatest));
   if (least < 0) add_text(list, lane.left + 4, lane.bottom - line - 1, theme().quiet, value_text(least));
 

@@ -103,6 +103,9 @@ inline constexpr Phrase k_picture_about{
     "現在の視点の画像。「表示」で消していなければ題名・凡例・時刻が入ります。"};
 inline constexpr Phrase k_picture_of_row{"It shows {0:.3f} s, the newest instant that is recorded.",
                                          "記録済みの最新時刻 {0:.3f} s の画像です。"};
+inline constexpr Phrase k_no_such_range{
+    "Nothing lies between {0:.2f} and {1:.2f}; the recording has {2:.2f} to {3:.2f}.",
+    "{0:.2f} から {1:.2f} の間には何もありません（記録は {2:.2f}〜{3:.2f}）。"};
 inline constexpr Phrase k_video_about{"The view as it is seen now, over a range of time.",
                                       "現在の視点の動画。時間の範囲を選べます。"};
 inline constexpr Phrase k_tables_about{

@@ -312,7 +312,11 @@ std::span<const SubjectValue> values_of(Subject::Kind kind) {
 }
 
 std::string value_text(double value) {
-  return std::isfinite(value) ? fmt::format("{:.3g}", value + 0.) : "-";
+  constexpr double k_rounding = 1e-9;
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  if (size < k_rounding) return "0";
+  return size >= 999.5 && size < 1e7 ? fmt::format("{:.0f}", value) : fmt::format("{:.3g}", value);
 }
 
 bool is_approximate(const Model& model, const io::FrameRow& row, std::size_t index) {

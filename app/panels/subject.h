@@ -58,7 +58,7 @@ std::vector<std::string> about(const FrameContext& frame, const Subject& subject
 /// Of the values of a member: its stress, and N, the first of the components.
 inline constexpr std::size_t k_stress_value = 0, k_first_component_value = 2;
 
-/// "0.013", "12.3", "1.23e+06", or a dash for what is not a number.
+/// "0.013", "12.3", "1234", "1.23e+08", "0" of what rounding makes, or a dash for what is not a number.
 std::string value_text(double value);
 
 /// Whether section forces of the member are rough at `row`: a contact force acts on the middle node of a pair

@@ -40,15 +40,18 @@ double tilt_share(const io::FrameRow& row, std::size_t body) {
   return row.body[body].tilt / (critical > 0 ? critical : k_pi / 2);
 }
 
+/// Of each piece of furniture over the run. Row by row: each is somewhere else in memory.
+std::vector<double> greatest_tilt_shares(const Player& player) {
+  std::vector<double> most(static_cast<std::size_t>(player.scene().setup.model.furniture_total()));
+  for (const RowPtr& row : player.way())
+    for (std::size_t b = 0; b < most.size(); ++b) most[b] = std::max(most[b], tilt_share(*row, b));
+  return most;
+}
+
 /// Those that tilt most over the run, of what they can, in their own order; all of a few.
-std::vector<std::size_t> coloured_bodies(const Player& player) {
-  const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
+std::vector<std::size_t> coloured_bodies(const std::vector<double>& greatest_shares) {
   std::vector<std::pair<double, std::size_t>> shares;
-  for (std::size_t b = 0; b < furniture; ++b) {
-    double most = 0;
-    for (const RowPtr& row : player.way()) most = std::max(most, tilt_share(*row, b));
-    shares.emplace_back(-most, b);
-  }
+  for (std::size_t b = 0; b < greatest_shares.size(); ++b) shares.emplace_back(-greatest_shares[b], b);
   std::ranges::sort(shares);
   if (shares.size() > k_coloured) shares.resize(k_coloured);
   std::vector<std::size_t> coloured;
@@ -94,7 +97,7 @@ void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& ro
   std::string moving;
   for (int k = 0; k < 3; ++k) {
     if (!rows.empty() && peak(rows, component(k)) == 0) continue;
-    add_curve(list, lane, rows, component(k), theme().floor[k], 1.3f);
+    add_curve(list, lane, rows, component(k), theme().floor[k], k_thin_curve);
     moving += (moving.empty() ? "" : ", ") + std::string(1, "xyz"[k]);
   }
   const float line = ImGui::GetTextLineHeight();
@@ -114,7 +117,7 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   lane.low = 1.08 * least;
   lane.high = greatest > least ? 1.08 * greatest : 1;
   list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
-  add_curve(list, lane, rows, factor, theme().floor[0], 1.3f);
+  add_curve(list, lane, rows, factor, theme().floor[0], k_thin_curve);
   add_text(list, label_left, lane.top, theme().text, say(k_load_factor));
   add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
 }
@@ -130,8 +133,10 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, const GhostCur
     if (!shares) return [b](const io::FrameRow& row) { return row.body[b].tilt * k_degrees; };
     return [b](const io::FrameRow& row) { return std::min(tilt_share(row, b), k_tilt_room); };
   };
+  const std::vector<double> greatest_shares = greatest_tilt_shares(player);
   double most = 0;
-  for (std::size_t b = 0; b < furniture; ++b) most = std::max(most, peak(rows, tilt(b)));
+  for (std::size_t b = 0; b < furniture; ++b)
+    most = std::max(most, shares ? std::min(greatest_shares[b], k_tilt_room) : peak(rows, tilt(b)));
   lane.low = 0;
   lane.high = shares ? k_tilt_room : std::max(k_least_tilt, 1.1 * most);
   list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
@@ -145,14 +150,16 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, const GhostCur
     add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text,
              most < k_tilt_room ? say(k_critical_at_one) : say(k_critical_and_cut, k_tilt_room));
   }
-  const std::vector<std::size_t> coloured = coloured_bodies(player);
+  const std::vector<std::size_t> coloured = coloured_bodies(greatest_shares);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };
   for (const bool with_colour : {false, true})  // coloured ones lie on top
     for (std::size_t b = 0; b < furniture; ++b) {
       if (is_coloured(b) != with_colour) continue;
       if (b < ghost.body.size() && ghost.body[b] >= 0)
-        add_curve(list, lane, ghost.way, tilt(static_cast<std::size_t>(ghost.body[b])), theme().ghost, 1);
-      add_curve(list, lane, rows, tilt(b), with_colour ? line_colour(coloured, b) : theme().other, 1.6f);
+        add_curve(list, lane, ghost.way, tilt(static_cast<std::size_t>(ghost.body[b])), theme().ghost,
+                  k_thin_curve);
+      add_curve(list, lane, rows, tilt(b), with_colour ? line_colour(coloured, b) : theme().other,
+                with_colour ? k_thick_curve : k_thin_curve);
     }
   const float room = lane.left - label_left - 4;
   float y = lane.top - 2;
@@ -303,7 +310,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
       hovered += (told++ > 0 ? "\n" : "") + text();
   };
   const float y = lane.bottom + size + 2;
-  const std::vector<std::size_t> coloured = coloured_bodies(player);
+  const std::vector<std::size_t> coloured = coloured_bodies(greatest_tilt_shares(player));
   for (const io::RecordedEvent& event : player.events()) {
     const EventMark& mark = row_of(k_event_marks, event.event.kind);
     const ImU32 colour = line_colour(coloured, static_cast<std::size_t>(event.event.body));

@@ -5,7 +5,7 @@
 namespace topple::app {
 namespace {
 
-constexpr double k_follow = 0.25;  // s
+constexpr double k_follow = 0.5;  // s
 
 }  // namespace
 

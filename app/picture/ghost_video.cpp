@@ -24,7 +24,7 @@ constexpr int k_width = 1280, k_height = 720, k_frame_rate = 30;
 constexpr std::size_t k_lines = 4;  // bodies that are spoken of
 /// Right of the words and above the trace.
 constexpr render::Room k_room{-0.36f, 0.95f, -0.8f, 0.9f};
-constexpr render::Float4 k_blue = {0.13f, 0.36f, 0.65f, 1};
+constexpr render::Float4 k_run_blue = {0.13f, 0.36f, 0.65f, 1};
 
 /// One motion as frames that stand still where the floor is.
 class Actor {
@@ -95,7 +95,7 @@ render::SceneFrame frame_of_both(const Actor& a, const Actor& b, double time) {
   const io::FrameRow row_a = a.row(time), row_b = b.row(time);
   render::SceneFrame frame = a.frame(row_a);
   for (render::Tube& tube : frame.tubes)
-    if (is_furniture(a, tube)) tube.colour = k_blue;
+    if (is_furniture(a, tube)) tube.colour = k_run_blue;
   frame.rings.clear();                          // of A alone
   frame.legend.maximum = frame.legend.minimum;  // no colour stands for a stress here
   add_ghost(b, b.frame(row_b), frame);

@@ -6,8 +6,8 @@
 namespace topple::app::window_words {
 
 inline constexpr Phrase k_ways{"The way out of a person {0} m wide:", "幅{0} mの人の避難経路："};
-inline constexpr Phrase k_way_open{"{0}: way to {1} open, {2} m wide, {3} m long",
-                                   "{0}：{1}まで通れる（幅 {2} m、長さ {3} m）"};
+inline constexpr Phrase k_way_open{"{0}: way to {1} open, widest {2} m, shortest {3} m long",
+                                   "{0}：{1}まで通れる（最も広い道の幅 {2} m、最短 {3} m）"};
 inline constexpr Phrase k_way_blocked{"{0}: no way to {1}, {2} m left, blocked by {3}",
                                       "{0}：{1}まで通れない（残り {2} m、塞ぐ家具：{3}）"};
 inline constexpr Phrase k_way_caught{"{0}: cannot leave, {1} is where they are",

@@ -77,7 +77,8 @@ std::string in_words(const study::FragilityPlan& plan, const study::FragilityRes
     text += "way out from " + plan.scene.setup.room.places[p].name + "\n" +
             open_share(plan, results.closed[p]) + line_of(plan, results.closed[p], "closed");
   if (results.failed > 0)
-    text += fmt::format("{} runs failed, the first: {}\n", results.failed, results.status);
+    text += fmt::format("{} run{} failed, the first: {}\n", results.failed, results.failed == 1 ? "" : "s",
+                        results.status);
   const bool all = results.planar == results.runs;
   text += coarser_in_words(plan.scene, plan.set);
   return text + fmt::format("{} of {} runs as planar blocks{}\n", results.planar, results.runs,

@@ -132,6 +132,9 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
       return close();
     }
     const bool video = what == What::video;
+    const double first = player.way().front()->time, last = player.way().back()->time;
+    if (video && (from > last || to < first || (from >= to && first < last)))
+      throw std::runtime_error(say(ww::k_no_such_range, from, to, first, last));
     words = {"render", recording, video ? "--mp4" : "--still",
              result,   "--size",  fmt::format("{}x{}", size[0], size[1])};
     const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
@@ -209,8 +212,8 @@ void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble(fmt::format("{}##to", unit).c_str(), &to, 0, 0, "%.2f");
-  from = std::clamp(std::isfinite(from) ? from : first, first, last);
-  to = std::clamp(std::isfinite(to) ? to : last, from, last);
+  if (!std::isfinite(from)) from = first;
+  if (!std::isfinite(to)) to = last;
   label(ww::k_rate);
   ImGui::SetNextItemWidth(number);
   ImGui::InputInt("##rate", &rate, 0);

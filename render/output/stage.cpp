@@ -14,8 +14,8 @@ namespace {
 
 constexpr int k_samples = 4;
 constexpr int k_greatest_side = 8192;
-constexpr double k_shares[] = {1, 0.85, 0.7, 0.6};  // of the pixels of each side
-constexpr double k_reserve = 0.8;                   // of the budget, below which a finer picture is tried
+constexpr double k_shares[] = {1, 0.85, 0.7, 0.6, 0.5};  // of the pixels of each side
+constexpr double k_reserve = 0.8;  // of the budget, below which a finer picture is tried
 
 bool draws_with_the_processor(const Gl& gl) {
   const auto* text = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));

@@ -28,7 +28,7 @@ struct Surface {
 };
 
 /// For a scene that moves, of the 33 ms of a frame, s (Stage::set_budget).
-inline constexpr double k_scene_budget = 0.022;
+inline constexpr double k_scene_budget = 0.018;
 
 /// Draws the scene when it changed, and the interface over the kept scene as often as need be. It is
 /// the same under a window and off screen. Every call needs the context current that it was made in.
@@ -50,7 +50,7 @@ class Stage {
                   Quality quality);
 
   /// From here on interactive scenes of a software context that take longer than this, s, are drawn coarser,
-  /// down to 0.6 of the pixels of each side; none: at their full size.
+  /// down to half of the pixels of each side; none: at their full size.
   void set_budget(std::optional<double> seconds);
 
   /// Puts the scene drawn last and the interface into the window's framebuffer.

@@ -131,8 +131,17 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
       draw_room(around, lighting, grounds);
   }
   gl_.BindFramebuffer(GL_FRAMEBUFFER, target.samples != 0 ? target.samples : target.framebuffer);
-  draw_room(bodies, lighting, grounds);
-  draw_bodies(lighting, camera);
+  // What bodies hide of the room need not be shaded, but for walls that one looks through from behind.
+  const auto from_behind = [](const DrawnGround& ground) { return ground.seen_from_behind; };
+  if (target.samples == 0 && std::none_of(grounds.grounds.begin(), grounds.grounds.end(), from_behind)) {
+    draw_backdrop(bodies);
+    draw_solids(lighting, camera);
+    draw_grounds(lighting, grounds);
+  } else {
+    draw_room(bodies, lighting, grounds);
+    draw_solids(lighting, camera);
+  }
+  draw_over_solids(lighting, camera);
   gl_.Disable(GL_SCISSOR_TEST);
   if (target.samples == 0) return;
   gl_.BindFramebuffer(GL_READ_FRAMEBUFFER, target.samples);
@@ -142,15 +151,23 @@ void ScenePainter::draw(const SceneFrame& frame, const Camera& camera, ColourMap
                       GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
-void ScenePainter::draw_bodies(const Lighting& lighting, const Camera& camera) {
+void ScenePainter::draw_lit(const Program& program, const Lighting& lighting, const Camera& camera,
+                            const IndexRange& part) {
+  use_lit(program, lighting, camera);
+  program.set("u_colour_map", static_cast<int>(k_colour_unit));
+  draw(part);
+}
+
+void ScenePainter::draw_solids(const Lighting& lighting, const Camera& camera) {
   gl_.Enable(GL_CULL_FACE);
-  const auto draw_lit = [&](const Program& program, const IndexRange& part) {
-    use_lit(program, lighting, camera);
-    program.set("u_colour_map", static_cast<int>(k_colour_unit));
-    draw(part);
-  };
-  draw_lit(lighting.shaded_solid, towards_light_);
-  draw_lit(lighting.solid, away_from_light_);
+  gl_.Enable(GL_DEPTH_TEST);
+  gl_.DepthFunc(GL_LEQUAL);
+  draw_lit(lighting.shaded_solid, lighting, camera, towards_light_);
+  draw_lit(lighting.solid, lighting, camera, away_from_light_);
+}
+
+void ScenePainter::draw_over_solids(const Lighting& lighting, const Camera& camera) {
+  gl_.Enable(GL_CULL_FACE);
   draw_flat(shells_);
   gl_.Enable(GL_BLEND);
   draw_ghosts(camera);
@@ -165,7 +182,7 @@ void ScenePainter::draw_bodies(const Lighting& lighting, const Camera& camera) {
   if (bands_.count > 0 && arrows_.count > 0) gl_.Clear(GL_DEPTH_BUFFER_BIT);
   gl_.Disable(GL_BLEND);
   gl_.Enable(GL_CULL_FACE);
-  draw_lit(lighting.shaded_solid, arrows_);
+  draw_lit(lighting.shaded_solid, lighting, camera, arrows_);
   gl_.Disable(GL_CULL_FACE);
   gl_.Disable(GL_DEPTH_TEST);
   gl_.BindVertexArray(0);
@@ -238,8 +255,8 @@ ScenePainter::Lighting& ScenePainter::lighting(Quality quality) {
   std::unique_ptr<Lighting>& lighting = lightings_[static_cast<std::size_t>(quality)];
   if (lighting == nullptr) {
     lighting = quality == Quality::still
-                   ? std::make_unique<Lighting>(gl_, "look_still.glsl", ShadowSize{2048, 512})
-                   : std::make_unique<Lighting>(gl_, "look_interactive.glsl", ShadowSize{1024, 256});
+                   ? std::make_unique<Lighting>(gl_, "look_still.glsl", ShadowSize{2048, 512, 256})
+                   : std::make_unique<Lighting>(gl_, "look_interactive.glsl", ShadowSize{1024, 256, 128});
   }
   return *lighting;
 }
@@ -263,6 +280,11 @@ ScenePainter::PixelRect ScenePainter::seen(const Target& target) const {
 }
 
 void ScenePainter::draw_room(const PixelRect& part, const Lighting& lighting, const Grounds& grounds) {
+  draw_backdrop(part);
+  if (part.width > 0 && part.height > 0) draw_grounds(lighting, grounds);
+}
+
+void ScenePainter::draw_backdrop(const PixelRect& part) {
   gl_.Scissor(part.left, part.bottom, part.width, part.height);
   if (part.width == 0 || part.height == 0) return;
   gl_.DepthMask(GL_TRUE);
@@ -273,7 +295,10 @@ void ScenePainter::draw_room(const PixelRect& part, const Lighting& lighting, co
   gl_.BindVertexArray(empty_array_.id());
   backdrop_.use();
   gl_.DrawArrays(GL_TRIANGLES, 0, 3);
+}
 
+void ScenePainter::draw_grounds(const Lighting& lighting, const Grounds& grounds) {
+  gl_.Disable(GL_CULL_FACE);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthFunc(GL_LEQUAL);
   gl_.BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);

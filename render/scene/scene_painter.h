@@ -62,8 +62,14 @@ class ScenePainter {
   /// The rectangle of the picture in which all that was uploaded is seen.
   PixelRect seen(const Target& target) const;
   void draw_room(const PixelRect& part, const Lighting& lighting, const Grounds& grounds);
+  void draw_backdrop(const PixelRect& part);
+  void draw_grounds(const Lighting& lighting, const Grounds& grounds);
   void draw_tiles(const Program& program, const DrawnGround& ground, const IndexRange& tiles);
-  void draw_bodies(const Lighting& lighting, const Camera& camera);
+  void draw_lit(const Program& program, const Lighting& lighting, const Camera& camera,
+                const IndexRange& part);
+  void draw_solids(const Lighting& lighting, const Camera& camera);
+  /// Outlines, ghosts, panels, paths and forces.
+  void draw_over_solids(const Lighting& lighting, const Camera& camera);
   void draw(const IndexRange& part);
   void draw_ghosts(const Camera& camera);
   void draw_panels(const Camera& camera);

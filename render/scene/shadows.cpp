@@ -23,7 +23,6 @@ constexpr GLuint k_key_unit = 1;
 constexpr GLuint k_contact_unit = 2;
 constexpr GLuint k_near_unit = 3;
 
-constexpr int k_shade_side = 256;   // of the map of contact shade, texels
 constexpr int k_coarse_side = 256;  // of the maps of what is near the floor, or between it and light, texels
 /// Of the key map, that light.glsl looks aside, with a texel's slack.
 constexpr float k_shadow_reach = 8.0f / 2048;
@@ -94,7 +93,7 @@ Shadows::Shadows(const Gl& gl, std::string_view constants, const ShadowSize& siz
   gl.BindFramebuffer(GL_FRAMEBUFFER, contact_target_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, contact_map_.id(), 0);
   check_framebuffer(gl, "contact map");
-  shade_map_ = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, k_shade_side, k_shade_side, nullptr);
+  shade_map_ = make_texture(gl, {GL_R8, GL_RED, GL_UNSIGNED_BYTE}, size.shade, size.shade, nullptr);
   gl.BindFramebuffer(GL_FRAMEBUFFER, shade_target_.id());
   gl.FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, shade_map_.id(), 0);
   check_framebuffer(gl, "contact shade");
@@ -123,17 +122,18 @@ std::vector<std::uint8_t> Shadows::marked(const Matrix4f& to_map, float margin, 
                                           const Mesh& solids) {
   constexpr float side = k_coarse_side;
   std::vector<std::uint8_t> marked(std::size_t{k_coarse_side} * k_coarse_side);
+  std::vector<Vector3f> places;  // of the vertices: on the map, and over the floor
+  places.reserve(solids.vertices.size());
+  for (const Vertex& vertex : solids.vertices) {
+    const Vector3f& x = vertex.position;
+    const Eigen::Vector2f at = on_coarse_map(to_map, x);
+    places.emplace_back(at.x(), at.y(), highest.floor.normal.dot(x - highest.floor.point));
+  }
   for (std::size_t i = 0; i + 2 < solids.indices.size(); i += 3) {
-    Eigen::Vector2f from(side, side), to(0, 0);
-    float height = highest.height;
-    for (std::size_t k = i; k < i + 3; ++k) {
-      const Vector3f& x = solids.vertices[solids.indices[k]].position;
-      height = std::min(height, highest.floor.normal.dot(x - highest.floor.point));
-      const Eigen::Vector2f at = on_coarse_map(to_map, x);
-      from = from.cwiseMin(at);
-      to = to.cwiseMax(at);
-    }
-    if (height >= highest.height) continue;
+    const Vector3f &a = places[solids.indices[i]], &b = places[solids.indices[i + 1]],
+                   &c = places[solids.indices[i + 2]];
+    const Vector3f from = a.cwiseMin(b).cwiseMin(c), to = a.cwiseMax(b).cwiseMax(c);
+    if (from.z() >= highest.height) continue;
     const auto texel = [](float at) { return std::clamp(static_cast<int>(at), 0, k_coarse_side - 1); };
     for (int y = texel(from.y() - side * margin); y <= texel(to.y() + side * margin); ++y)
       for (int x = texel(from.x() - side * margin); x <= texel(to.x() + side * margin); ++x)
@@ -226,7 +226,7 @@ void Shadows::shade_contact() {
   gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R8, k_coarse_side, k_coarse_side, 0, GL_RED, GL_UNSIGNED_BYTE,
                  near_.data());
   gl_.BindFramebuffer(GL_FRAMEBUFFER, shade_target_.id());
-  gl_.Viewport(0, 0, k_shade_side, k_shade_side);
+  gl_.Viewport(0, 0, size_.shade, size_.shade);
   gl_.Disable(GL_DEPTH_TEST);
   shade_program_.use();
   shade_program_.set("u_contact", static_cast<int>(k_contact_unit));

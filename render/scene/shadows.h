@@ -27,6 +27,7 @@ struct FloorPlane {
 struct ShadowSize {
   int key;
   int contact;
+  int shade;  ///< of contact, once for each place on the floor
 };
 
 /// The maps and what shaders need to read them. `gl` must outlive them.

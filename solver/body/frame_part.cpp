@@ -121,7 +121,8 @@ void FramePart::advance(const StepSpan& span, State& next, PartScratch& scratch,
 
 StepStatus FramePart::advance_in_substeps(const StepSpan& span, State& next, IntegratorScratch& w,
                                           StepEnergy& energy) {
-  const int count = static_cast<int>(std::ceil(span.h / substep_->step * span.parameters.substep_refinement));
+  // as many in a shorter step: it is shorter so that its energy adds up
+  const int count = static_cast<int>(std::ceil(k_most_substeps * span.parameters.substep_refinement));
   StepStatus status;
   StepInputs from = span.start;
   for (int k = 1; k <= count && status.ok(); ++k) {

@@ -44,7 +44,7 @@ namespace topple {
 inline constexpr double k_near_yield = 0.9;   ///< sqrt(f + 1)
 inline constexpr double k_calm_yield = 0.45;  ///< sqrt(f + 1)
 inline constexpr double k_calm_for = 0.2;     ///< s
-inline constexpr double k_negligible = 5e-4;  ///< strain energy over m g reach
+inline constexpr double k_negligible = 1e-3;  ///< strain energy over m g reach
 
 /// A few words: "a section is near yield".
 const char* name(LevelReason reason);

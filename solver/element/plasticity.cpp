@@ -220,4 +220,13 @@ std::array<double, 2> flowed_turns(const Element& element, const BeamStrain& off
   return {element.length * std::sqrt(square[0]), element.length * std::sqrt(square[1])};
 }
 
+Hinge flowed_at(const Element& element, const ElementState& state) {
+  constexpr double k_beside = 1e-9;  // of the other end's turn: rounding
+  if (state.hinge == Hinge::broken) return Hinge::broken;
+  if (state.offset.gamma.isZero(0) && state.offset.kappa.isZero(0)) return Hinge::none;
+  if (element.hinge_place[0] == element.hinge_place[1]) return Hinge::middle;
+  const auto [first, second] = flowed_turns(element, state.offset);
+  return second < k_beside * first ? Hinge::first : first < k_beside * second ? Hinge::second : Hinge::both;
+}
+
 }  // namespace topple

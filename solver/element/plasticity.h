@@ -49,4 +49,8 @@ void take_flow(const Element& element, const SectionResponse& response, ElementS
 /// Bending, 1/m times the element's length, that flowed at each hinge place.
 std::array<double, 2> flowed_turns(const Element& element, const BeamStrain& offset);
 
+/// Where an element has flowed, as its offset tells: whether it flows now or not. Axial flow and twist alone:
+/// at both ends. A broken one: broken.
+Hinge flowed_at(const Element& element, const ElementState& state);
+
 }  // namespace topple

@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-12";
+  return "topple-13";
 }
 
 }  // namespace topple

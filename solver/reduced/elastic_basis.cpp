@@ -185,9 +185,10 @@ struct UnitForce {
   Vec3 along;
 };
 
-// Of its first anchors along their lines, then of the floor on its base; none: nothing holds it.
+// Of its first anchors along their lines, then of the floor on the corners of its base; none: nothing holds
+// it.
 std::vector<UnitForce> unit_forces(const Model& model, int index) {
-  constexpr std::size_t k_anchors = 2;
+  constexpr std::size_t k_anchors = 2, k_corners = 4;
   const Body& body = model.bodies[index];
   std::vector<UnitForce> forces;
   for (const Anchor& anchor : model.anchors) {
@@ -198,23 +199,41 @@ std::vector<UnitForce> unit_forces(const Model& model, int index) {
         forces.push_back({end.node - body.first_node, (point - anchor.to).normalized()});
   }
   if (forces.empty()) return forces;
+  const auto node_of = [&](int point) { return model.contact_points[point].node; };
+  Vec3 middle = Vec3::Zero();
   for (const int point : body.base_points)
-    forces.push_back({model.contact_points[point].node - body.first_node, Vec3::UnitZ()});
+    middle += model.node_position[node_of(point)] / static_cast<double>(body.base_points.size());
+  double reach = 0;
+  const auto away = [&](int point) { return (model.node_position[node_of(point)] - middle).norm(); };
+  for (const int point : body.base_points) reach = std::max(reach, away(point));
+  std::size_t corners = 0;
+  for (const int point : body.base_points)
+    if (away(point) > (1 - k_rounding) * reach && corners++ < k_corners)
+      forces.push_back({node_of(point) - body.first_node, Vec3::UnitZ()});
   return forces;
 }
 
 }  // namespace
 
 std::shared_ptr<const ElasticBasis> with_attachments(const Model& model, int index) {
-  constexpr Eigen::Index k_most = 4;      // shapes
   constexpr double k_independent = 1e-6;  // of a shape's square, what others leave of it
   const Body& body = model.bodies[index];
-  const ElasticBasis& before = *body.elastic;
-  MatrixXd shapes(before.shape.rows(), 0), mass_shapes = shapes;
+  const std::vector<UnitForce> all = unit_forces(model, index);
+  if (all.empty()) return body.elastic;
+  auto basis = std::make_shared<ElasticBasis>(*body.elastic);
+  // what a shape of this frequency gives is residual, or no more
+  const auto move_to_residual = [&](const VectorXd& shape, double frequency, double sign) {
+    VectorXd moves(shape.size() / 2);
+    for (Eigen::Index i = 0; i < shape.size() / 6; ++i) moves.segment<3>(3 * i) = shape.segment<3>(6 * i);
+    basis->residual_shape += sign / (frequency * frequency) * shape * moves.transpose();
+  };
+  const int kept = std::min(basis->modes, k_modes - static_cast<int>(all.size()));
+  for (int k = kept; k < basis->modes; ++k) move_to_residual(basis->shape.col(k), basis->frequency[k], 1);
+
+  MatrixXd shapes(basis->shape.rows(), 0), mass_shapes = shapes;
   std::vector<UnitForce> forces;
-  for (const UnitForce& force : unit_forces(model, index)) {
-    if (shapes.cols() == k_most) break;
-    const VectorXd shape = before.residual_shape.middleCols<3>(3 * force.node) * force.along,
+  for (const UnitForce& force : all) {
+    const VectorXd shape = basis->residual_shape.middleCols<3>(3 * force.node) * force.along,
                    mass_shape = mass_times(model, body, shape);
     const double whole = shape.dot(mass_shape);
     double left = whole;
@@ -239,24 +258,14 @@ std::shared_ptr<const ElasticBasis> with_attachments(const Model& model, int ind
   const MatrixXd mass = mass_shapes.transpose() * shapes;
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> ritz((compliance + compliance.transpose()) / 2,
                                                                 (mass + mass.transpose()) / 2);
-  auto basis = std::make_shared<ElasticBasis>(before);
-  const int kept = std::min(before.modes, k_modes - added);
   basis->modes = kept + added;
-  basis->shape.resize(Eigen::NoChange, basis->modes);
-  basis->shape << before.shape.leftCols(kept), shapes * ritz.eigenvectors();
-  for (int k = 0; k < added; ++k) basis->frequency[kept + k] = std::sqrt(ritz.eigenvalues()[k]);
-  // what modes that are gone gave is residual now, what the shapes give is not
-  const auto moves = [](const MatrixXd& shape, int k) {
-    VectorXd out(shape.rows() / 2);
-    for (Eigen::Index i = 0; i < shape.rows() / 6; ++i) out.segment<3>(3 * i) = shape.block<3, 1>(6 * i, k);
-    return out;
-  };
-  for (int k = kept; k < before.modes; ++k)
-    basis->residual_shape += before.shape.col(k) * moves(before.shape, k).transpose() /
-                             (before.frequency[k] * before.frequency[k]);
-  for (int k = kept; k < basis->modes; ++k)
-    basis->residual_shape -= basis->shape.col(k) * moves(basis->shape, k).transpose() /
-                             (basis->frequency[k] * basis->frequency[k]);
+  basis->shape.conservativeResize(Eigen::NoChange, basis->modes);
+  basis->shape.rightCols(added) = shapes * ritz.eigenvectors();
+  basis->frequency.tail(k_modes - kept).setZero();
+  for (int k = 0; k < added; ++k) {
+    basis->frequency[kept + k] = std::sqrt(ritz.eigenvalues()[k]);
+    move_to_residual(basis->shape.col(kept + k), basis->frequency[kept + k], -1);
+  }
   complete(model, body, *basis);
   return basis;
 }

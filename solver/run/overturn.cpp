@@ -420,6 +420,7 @@ void Outcome::observe_sides(const Model& model, const State& state, double weigh
 void Outcome::observe(const Model& model, const Parameters& parameters, const State& state,
                       const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
                       const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+  const bool goes_on = state.step > 0 && !bodies_.empty() && !bodies_.front().level;  // from a checkpoint
   observe_forces(model, forces, between);
   find_poses(model, state);
   for (std::size_t b = 0; b < poses_.size(); ++b) {
@@ -427,7 +428,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     observe_pose(model, state, b, events);
     observe_sides(model, state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }
-  observe_sections(model, state, sections, events);
+  observe_sections(model, state, sections, goes_on, events);
   observe_anchors(model, state, events);
 }
 
@@ -492,30 +493,34 @@ void Outcome::observe_stresses(const Model& model, const State& state,
 }
 
 void Outcome::observe_sections(const Model& model, const State& state,
-                               const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+                               const std::vector<SectionForces>& sections, bool goes_on,
+                               std::vector<Event>& events) {
   observe_stresses(model, state, sections);
   each_stressed_element(model, state, [&](int e, int body) {
     const Element& element = model.elements[e];
     const ElementState& now = state.elements[e];
-    if (now.hinge == Hinge::none) return;
+    const bool flows = now.hinge != Hinge::none;
+    const Hinge hinge = flows ? now.hinge : flowed_at(element, now);  // it may have unloaded within the step
+    if (hinge == Hinge::none) return;
     BodyOutcome& o = bodies_[body];
-    const auto tell = [&](Event::Kind kind, Hinge hinge, int& count) {
+    const auto tell = [&](Event::Kind kind, Hinge value, int& count) {
       ++count;
       events.push_back({.kind = kind,
                         .step = state.step,
                         .time = state.time,
                         .body = body,
-                        .value = static_cast<double>(hinge),
+                        .value = static_cast<double>(value),
                         .element = e});
     };
-    if (now.hinge == Hinge::broken && !std::exchange(broke_[e], true))
-      tell(Event::Kind::fracture, now.hinge, o.fractures);
+    if (hinge == Hinge::broken && !std::exchange(broke_[e], true))
+      tell(Event::Kind::fracture, hinge, o.fractures);
     for (int place = 0; place < 2; ++place)
-      if (has_hinge(now.hinge, place) && !std::exchange(flowed_[element.node[place]], true))
+      if (has_hinge(hinge, place) && !std::exchange(flowed_[element.node[place]], true) &&
+          (flows || !goes_on))
         tell(Event::Kind::hinge,
-             now.hinge != Hinge::both ? now.hinge
-             : place == 0             ? Hinge::first
-                                      : Hinge::second,
+             hinge != Hinge::both ? hinge
+             : place == 0         ? Hinge::first
+                                  : Hinge::second,
              o.hinges);
   });
 }

@@ -178,8 +178,9 @@ class Outcome {
   void find_poses(const Model& model, const State& state);
   void observe_sides(const Model& model, const State& state, double weight, std::size_t b,
                      std::vector<Event>& events);
+  /// goes_on: this is the first observation of a run that goes on from a checkpoint.
   void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
-                        std::vector<Event>& events);
+                        bool goes_on, std::vector<Event>& events);
 
   void observe_anchors(const Model& model, const State& state, std::vector<Event>& events);
 

@@ -52,8 +52,9 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
     const double counts = h <= reach ? error.energy : error.greatest();
     if (status.ok() && counts <= 1) {
       if (h == left) w.next.time = state.time + left;
+      const double by_reach = std::min(next_size(h, error.energy, 0), reach);
       const double wanted =
-          std::min(std::max(next_size(h, error.greatest(), w.most_iterations), reach), k_longest_step);
+          std::min(std::max(next_size(h, error.greatest(), w.most_iterations), by_reach), k_longest_step);
       w.next.step_size = h;
       if (!by_limit) change_step(w.next, std::min(wanted, w.parts.time_limit(parameters, w.next)));
       break;

@@ -73,6 +73,19 @@ for (const [name, step, duration] of cases) {
 }
 expect(falls >= 5, `only ${falls} pieces fall: nothing is compared`);
 
+// Who is hit, and when: of steps, not of the rows that a page keeps.
+{
+  const text = 'topple = 1\nfloor = {}\nplace = [{ name = "bed", at = [1, 0] }]\nrun = { duration = 2, time_step = "1 ms", output_rate = 7, settle = false }\n' +
+    '[[block]]\nname = "box"\nsize = [0.3, 0.6, 1.5]\nmass = 60\ntilt = "14 deg"\n';
+  const file = path.join(folder, 'hit.toml');
+  fs.writeFileSync(file, text);
+  const own = run('hit', text).hits;
+  const native = JSON.parse(execFileSync(topple, ['run', file, '--quiet', '--json', '-'], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'ignore'] })).ways[0].hit_by;
+  expect(own.length === 1 && native.length === 1 && own[0].place === 0 && own[0].body === 0 &&
+    Math.abs(own[0].time_s - native[0].time_s) <= most,
+    `hits are ${JSON.stringify(own)}, in the program ${JSON.stringify(native)}`);
+}
+
 // A scene that cannot be understood says where, and a change out of range is refused in words.
 const refused = (of) => { try { of(); return ''; } catch (error) { return error.message; } };
 expect(/^bad\.toml:2:1: /.test(refused(() => engine.load('bad', 'topple = 1\nnonsense = 3\n', []))), 'a bad scene is not refused with its place');

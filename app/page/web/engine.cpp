@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "app/page/block_map.h"
+#include "app/page/outcome_json.h"
 #include "app/page/page_controls.h"
 #include "app/page/page_rows.h"
 #include "app/page/page_words.h"
@@ -92,28 +93,6 @@ Json controls_json() {
   return list;
 }
 
-Json ends_json(const std::vector<BodyEnd>& ends) {
-  Json list = Json::array();
-  for (const BodyEnd& end : ends)
-    list.push_back({{"name", end.name},
-                    {"overturn_time_s", end.overturned ? number(*end.overturned) : Json(nullptr)},
-                    {"peak_tilt_deg", number(end.peak_tilt)},
-                    {"critical_tilt_deg", end.critical ? number(*end.critical) : Json(nullptr)}});
-  return list;
-}
-
-std::optional<double> maybe(const Json& value) {
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
-
-std::vector<BodyEnd> ends_from(const Json& list) {
-  std::vector<BodyEnd> ends;
-  for (const Json& one : list)
-    ends.push_back({one.at("name").get<std::string>(), maybe(one.at("overturn_time_s")),
-                    maybe(one.at("peak_tilt_deg")).value_or(0), maybe(one.at("critical_tilt_deg"))});
-  return ends;
-}
-
 Json load(const std::string& name, const std::string& text, const Json& values) {
   Engine& e = engine();
   e.run.reset(), e.map.reset(), e.picture.reset();
@@ -153,6 +132,7 @@ Json outcome() {
   const Run& run = *engine().run;
   const std::string trouble = refusal();
   return {{"bodies", ends_json(ends_of(run))},
+          {"hits", hits_json(run.places())},
           {"hash", fmt::format("{:016x}", hash(run.state()))},
           {"trouble", trouble.empty()
                           ? Json(nullptr)
@@ -284,15 +264,17 @@ EMSCRIPTEN_KEEPALIVE const char* page_verdict(const char* bodies) {
   });
 }
 
-/// Rows to be shown from now on, of the scene that was loaded last.
-EMSCRIPTEN_KEEPALIVE const char* page_show(const char* bytes, int size) {
+/// Rows to be shown from now on, of the scene that was loaded last, and who is hit, a list as in
+/// page_outcome().
+EMSCRIPTEN_KEEPALIVE const char* page_show(const char* bytes, int size, const char* hits) {
   return answer_of([&] {
     Engine& e = engine();
     std::vector<io::FrameRow> rows =
         unpack_rows(e.scene->setup.model, {bytes, static_cast<std::size_t>(size)});
     if (rows.empty()) throw io::InputError(say(window_words::k_no_instants));
     Json found = curves(rows, *e.scene);
-    e.picture = std::make_unique<PagePicture>(*e.scene, std::move(rows));
+    e.picture = std::make_unique<PagePicture>(
+        *e.scene, std::move(rows), hits_from(Json::parse(hits), e.scene->setup.room.places.size()));
     return found;
   });
 }

@@ -36,7 +36,9 @@ function wrap(module) {
     load: (name, scene, values) =>
       lend(text(name), (n) => lend(text(scene), (s) =>
         lend(text(JSON.stringify(values)), (v) => parsed(module._page_load(n, s, v))))),
-    show: (bytes) => lend(bytes, (at) => parsed(module._page_show(at, bytes.length))),
+    show: (bytes, hits) =>
+      lend(bytes, (at) => lend(text(JSON.stringify(hits)), (h) =>
+        parsed(module._page_show(at, bytes.length, h)))),
     rows: () => {
       const at = module._page_pack();
       return module.HEAPU8.slice(at, at + module._page_packed_size());

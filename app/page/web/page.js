@@ -151,7 +151,7 @@ function fromWorker(event) {
   page.bodies = message.outcome.bodies;
   page.hash = message.outcome.hash;
   complain(message.outcome.trouble || '');
-  show(message.rows);
+  show(message.rows, message.outcome.hits);
 }
 
 // trouble: a text, or one in each language.
@@ -161,12 +161,12 @@ function complain(trouble) {
   byId('trouble').textContent = Array.isArray(trouble) ? inWords(trouble) : trouble;
 }
 
-function show(rows) {
+function show(rows, hits) {
   const loaded = page.engine.load(data.name, data.text, page.values);
   page.names = loaded.bodies;
   page.duration = loaded.duration;
-  page.shown = rows;
-  page.curves = page.engine.show(rows);
+  page.shown = { rows, hits };
+  page.curves = page.engine.show(rows, hits);
   page.time = Math.min(Math.max(page.time, start()), end());
   Object.assign(byId('time'), { min: start(), max: end() });
   sayVerdict();
@@ -189,7 +189,7 @@ function backToRecorded() {
   byId('progress').hidden = true;
   complain('');
   buildControls();
-  show(bytesOf(data.rows));
+  show(bytesOf(data.rows), data.hits);
   askForMap();
 }
 
@@ -427,7 +427,7 @@ function listen() {
 }
 
 function relabel() {
-  page.engine.show(page.shown);
+  page.engine.show(page.shown.rows, page.shown.hits);
   sayVerdict();
   complain(page.trouble);
   if (page.mapped) showMap(page.mapped);
@@ -459,7 +459,7 @@ async function begin() {
   page.controls = loaded.controls;
   page.values = page.controls.map((control) => control.value);
   buildControls();
-  show(bytesOf(data.rows));
+  show(bytesOf(data.rows), data.hits);
   buildPieces();
   view(3);
   listen();

@@ -10,9 +10,11 @@
 namespace topple::app {
 namespace {
 
-RunExtent extent_of_rows(const io::Scene& scene, const std::vector<io::FrameRow>& rows) {
+RunExtent extent_of(const io::Scene& scene, const std::vector<io::FrameRow>& rows,
+                    std::vector<PlaceOutcome> hits) {
   RunExtent extent;
   for (const io::FrameRow& row : rows) extent.add(scene.setup, scene.setup.parameters, row);
+  extent.hits = std::move(hits);
   return extent;
 }
 
@@ -105,8 +107,12 @@ struct WebPainter {
 
 }  // namespace
 
-PagePicture::PagePicture(const io::Scene& scene, std::vector<io::FrameRow> rows)
-    : scene_(scene), rows_(std::move(rows)), extent_(extent_of_rows(scene, rows_)), bridge_(scene, extent_) {
+PagePicture::PagePicture(const io::Scene& scene, std::vector<io::FrameRow> rows,
+                         std::vector<PlaceOutcome> hits)
+    : scene_(scene),
+      rows_(std::move(rows)),
+      extent_(extent_of(scene, rows_, std::move(hits))),
+      bridge_(scene, extent_) {
   at(rows_.front().time, 0);
 }
 

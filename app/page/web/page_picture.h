@@ -14,8 +14,8 @@ namespace topple::app {
 
 class PagePicture {
  public:
-  /// The scene must outlive it. rows: finite, at least one.
-  PagePicture(const io::Scene& scene, std::vector<io::FrameRow> rows);
+  /// The scene must outlive it. rows: finite, at least one. hits: one per place of the room.
+  PagePicture(const io::Scene& scene, std::vector<io::FrameRow> rows, std::vector<PlaceOutcome> hits);
   /// The picture at `time`, s, which stays until the next call. colour: place in beam_quantities().
   const render::SceneFrame& at(double time, int colour);
   const render::SceneFrame& frame() const { return frame_; }

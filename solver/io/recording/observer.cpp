@@ -53,15 +53,13 @@ void fill_nodes(const State& state, FrameRow& row) {
   }
 }
 
-// The offset that hinges left tells at which ends they were; axial flow and twist alone: at both.
 std::uint8_t hinge_code(const Element& element, const ElementState& state) {
-  constexpr double k_beside = 1e-9;  // of the other end's turn: rounding
   if (state.hinge != Hinge::none) return static_cast<std::uint8_t>(state.hinge);
-  if (state.offset.gamma.isZero(0) && state.offset.kappa.isZero(0)) return 0;
-  const auto [first, second] = flowed_turns(element, state.offset);
-  return second < k_beside * first   ? k_flowed_first
-         : first < k_beside * second ? k_flowed_second
-                                     : k_flowed_both;
+  const Hinge flowed = flowed_at(element, state);
+  return flowed == Hinge::none     ? 0
+         : flowed == Hinge::first  ? k_flowed_first
+         : flowed == Hinge::second ? k_flowed_second
+                                   : k_flowed_both;
 }
 
 // Where the section forces of a row are told: at a hinge, else where they are integrated.

@@ -178,17 +178,16 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
       {{{"from_s", 0}, {"model", "elastic"}, {"reason", "stresses are wanted"}, {"error_estimate", 4e-4}}});
   body["impacts"] = 0;
   body["first_beyond_critical_s"] = 0.5;
-  EXPECT_NE(summary_table(s).find(
-                "off from a frame by about 0.04 % until it leans by half of its critical angle)\n"),
-            std::string::npos)
+  EXPECT_NE(
+      summary_table(s).find("off from a frame by about 0.04 % until it lifts; leaning enlarges that)\n"),
+      std::string::npos)
       << summary_table(s);
   body["models"][0]["error_estimate"] = 4e-9;  // its steps' errors are greater
-  EXPECT_NE(summary_table(s).find("by less than 0.1 % until it leans"), std::string::npos)
+  EXPECT_NE(summary_table(s).find("by less than 0.1 % until it lifts"), std::string::npos)
       << summary_table(s);
   body["models"][0]["error_estimate"] = 4e-4;
   body["impacts"] = 78;
-  EXPECT_NE(summary_table(s).find("by about 0.04 % until it first lands, however lightly, or leans by half "
-                                  "of its critical angle; both enlarge that)\n"),
+  EXPECT_NE(summary_table(s).find("by about 0.04 % until it lifts; leaning and landing enlarge that)\n"),
             std::string::npos);
 }
 
@@ -353,7 +352,7 @@ TEST(Summary, says_who_gets_out_before_and_after) {
                                  "by a, b, as before the shake\n"),
       std::string::npos)
       << summary_table(closed);
-  EXPECT_NE(summary_table(open).find("place desk: way to door open, 0.51 m wide, 3.0 m long\n"),
+  EXPECT_NE(summary_table(open).find("place desk: way to door open, widest 0.51 m, shortest 3.0 m long\n"),
             std::string::npos)
       << summary_table(open);
 }

@@ -331,6 +331,21 @@ TEST_F(ExportPageTest, ten_thousand_rows_are_thinned_evenly_and_the_last_is_kept
   EXPECT_EQ(times, expected);
 }
 
+// Rows stand a third of a second apart.
+TEST_F(ExportPageTest, who_is_hit_is_told_as_the_run_found_it) {
+  write_bytes("hit.toml",
+              "topple = 1\nfloor = {}\nplace = [{ name = \"bed\", at = [1, 0] }]\n"
+              "run = { duration = 2, output_rate = 3, settle = false }\n"
+              "[[block]]\nname = \"box\"\nsize = [0.3, 0.6, 1.5]\nmass = 60\ntilt = \"14 deg\"\n");
+  const Ended run = topple({"run", "hit.toml", "-o", "hit.h5", "--quiet", "--json", "-"});
+  ASSERT_EQ(run.code, 0) << run.err;
+  ASSERT_EQ(topple({"export", "hit.h5", "--page", "page.html"}).code, 0);
+  const nlohmann::ordered_json hit = json_of(run.out)["ways"][0]["hit_by"][0];
+  EXPECT_EQ(data_of(bytes_of("page.html"))["hits"],
+            nlohmann::ordered_json::parse(R"([{"place": 0, "body": 0, "time_s": )" +
+                                          hit["time_s"].dump() + "}]"));
+}
+
 TEST_F(ExportPageTest, a_scene_is_changed_as_by_run) {
   const std::vector<std::string> sets = {"--set", "run.duration=0.2", "--set", "cabinet.free.mass=99 kg"};
   const auto with_sets = [&](std::vector<std::string> arguments) {

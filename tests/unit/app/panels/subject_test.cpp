@@ -194,7 +194,7 @@ TEST(Subject, an_anchor_has_its_strength_and_the_greatest_force_between_rows_too
     EXPECT_GT(peak, 0);
     EXPECT_EQ(now.anchor_peaks[k], peak);
     EXPECT_EQ(about(now, {Subject::Kind::anchor, k}).at(2),
-              fmt::format("strength 1.5e+03 N, greatest force {:.3g} N, {} of its strength", peak,
+              fmt::format("strength 1500 N, greatest force {:.3g} N, {} of its strength", peak,
                           percent_of(peak, 1500)));
   }
   const std::vector<std::string> body = about(now, k_body);

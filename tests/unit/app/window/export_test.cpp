@@ -104,6 +104,19 @@ TEST_F(ExportDialogTest, a_camera_that_follows_is_where_the_window_has_it) {
   EXPECT_LT(different, 100);
 }
 
+TEST_F(ExportDialogTest, a_range_in_which_nothing_lies_is_refused_and_stays_as_it_was_typed) {
+  open_rocking();
+  run_to(0.5);
+  open_export(ExportDialog::What::video);
+  set_path("view.mp4");
+  dialog().from = 36;
+  frame();
+  EXPECT_EQ(dialog().from, 36);
+  start();
+  EXPECT_EQ(dialog().refused().find("Nothing lies between 36.00 and 0.5"), 0u) << dialog().refused();
+  EXPECT_TRUE(exports().empty());
+}
+
 TEST_F(ExportDialogTest, tables_appear_as_a_whole_folder) {
   open_rocking();
   run_to(0.2);

@@ -563,5 +563,29 @@ TEST(Overturn, peak_stress_is_at_the_corner_where_normal_force_and_both_moments_
   EXPECT_NEAR(outcome.bodies()[0].peak_stress, exact, 1e-9 * exact);
 }
 
+TEST(Overturn, a_hinge_that_unloads_within_the_step_counts_but_not_one_from_before_a_checkpoint) {
+  const Standing s = standing();
+  State state = start_state(s.model, {s.start});
+  const std::vector<SectionForces> sections(s.model.elements.size(), {Vec3::Zero(), Vec3::Zero()});
+  Outcome outcome(s.model, {s.start}), later = outcome;
+  std::vector<Event> events;
+  outcome.observe(s.model, {}, state, {}, {}, sections, events);
+  state.step = 7;
+  state.elements[3].offset.kappa = {1e-4, 0, 0};  // twist: at both ends, none of which flows now
+  for (int k = 0; k < 2; ++k) outcome.observe(s.model, {}, state, {}, {}, sections, events);
+  EXPECT_EQ(outcome.bodies()[0].hinges, 2);
+  ASSERT_EQ(std::ranges::count(events, Event::Kind::hinge, &Event::kind), 2);
+  EXPECT_EQ(events.back().element, 3);
+  EXPECT_EQ(events.back().value, static_cast<double>(Hinge::second));
+
+  events.clear();
+  later.observe(s.model, {}, state, {}, {}, sections, events);
+  EXPECT_EQ(later.bodies()[0].hinges, 0);
+  state.elements[3].hinge = Hinge::second;
+  later.observe(s.model, {}, state, {}, {}, sections, events);
+  EXPECT_EQ(later.bodies()[0].hinges, 0);  // it had flowed
+  EXPECT_EQ(std::ranges::count(events, Event::Kind::hinge, &Event::kind), 0);
+}
+
 }  // namespace
 }  // namespace topple::test
