@@ -107,7 +107,8 @@ int carry_out_whole(const Study& study, const StudyOptions& options) {
                  {{"jobs", options.jobs.value_or(1)}, {"quick", options.quick}}, wall_s, found);
   const std::string left = !options.quick          ? ""
                            : found.run == found.of ? ": --quick left nothing out"
-                                                   : std::string(": --quick left out ") + study.left_out;
+                                                   : fmt::format(": --quick left out {}, {} first",
+                                                                 found.of - found.run, study.left_out);
   fmt::print("{}{} of {} {} in {:.1f} s{}\n{}.csv, .json, .svg, .png\n", found.text, found.run, found.of,
              study.runs, wall_s, left, stem);
   return k_done;

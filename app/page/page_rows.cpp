@@ -58,6 +58,7 @@ std::vector<io::FrameRow> unpack_rows(const Model& model, std::string_view bytes
   std::vector<io::FrameRow> rows;
   while (!bytes.empty()) {
     rows.push_back(io::blank_row(io::row_shape(model)));
+    rows.back().knows_contacts = false;
     for_packed(rows.back(), [&](void* to, std::size_t count) {
       std::memcpy(to, bytes.data(), count);
       bytes.remove_prefix(count);

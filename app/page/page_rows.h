@@ -24,7 +24,8 @@ std::size_t page_stride(const Model& model, std::size_t rows);
 /// section forces and anchors single precision. Contact forces and energies are left out.
 std::string pack_rows(const std::vector<io::FrameRow>& rows);
 
-/// The inverse; what was left out is zero. Throws io::InputError where the bytes are no rows of this model.
+/// The inverse; what was left out is zero, and FrameRow::knows_contacts false. Throws io::InputError where
+/// the bytes are no rows of this model.
 std::vector<io::FrameRow> unpack_rows(const Model& model, std::string_view bytes);
 
 }  // namespace topple::app

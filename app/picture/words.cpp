@@ -59,7 +59,7 @@ bool is_in_the_air(const Model& model, const Vec3& gravity, const io::FrameRow& 
   const Body& body = model.bodies[index];
   const int planes = static_cast<int>(model.planes.size());
   const auto is_its = [&](int node) { return model.node_body[node] == static_cast<int>(index); };
-  return moves_faster(model, gravity, row, index, k_flies) &&
+  return row.knows_contacts && moves_faster(model, gravity, row, index, k_flies) &&
          !any_force(row.contact_force, body.first_contact_point * planes, body.contact_point_count * planes,
                     3) &&
          !touches_another(body, row) &&

@@ -155,7 +155,8 @@ std::string SweepEnd::runs_in_words(const std::string& each) const {
 std::string SweepEnd::left_in_words(bool quick, const char* what) const {
   if (!quick) return "";
   return complete() ? ": --quick left nothing out"
-                    : fmt::format("; --quick left out {}, --resume goes on from {}", what, file);
+                    : fmt::format("; --quick left out {}, {} first, --resume goes on from {}",
+                                  rows.size() - run, what, file);
 }
 
 }  // namespace topple::app

@@ -13,12 +13,20 @@ function sized(canvas) {
 
 // ---- the timeline
 
+// The pieces that have a colour: those that tilt most, of what they can, in their own order.
+function coloured() {
+  const most = page.curves.bodies.map((shares) => Math.max(0, ...shares));
+  return most.map((_, b) => b).sort((a, b) => most[b] - most[a] || a - b).slice(0, colours.length)
+    .sort((a, b) => a - b);
+}
+
 function buildKey() {
-  const items = page.names.slice(0, colours.length).map((name, b) => {
+  page.coloured = coloured();
+  const items = page.coloured.map((b, i) => {
     const item = document.createElement('li');
     const swatch = document.createElement('i');
-    swatch.style.background = colours[b];
-    item.append(swatch, name);
+    swatch.style.background = colours[i];
+    item.append(swatch, page.names[b]);
     return item;
   });
   if (page.names.length > colours.length) {
@@ -61,10 +69,14 @@ function drawTimeline() {
     brush.stroke();
   };
   brush.lineWidth = 1.6 * scale;
+  brush.strokeStyle = soft;
   page.curves.bodies.forEach((shares, b) => {
-    brush.strokeStyle = colours[Math.min(b, colours.length - 1)];
-    brush.setLineDash(dashes[b % dashes.length].map((d) => d * scale));
-    path(shares, y);
+    if (!page.coloured.includes(b)) path(shares, y);
+  });
+  page.coloured.forEach((b, i) => {
+    brush.strokeStyle = colours[i];
+    brush.setLineDash(dashes[i % dashes.length].map((d) => d * scale));
+    path(page.curves.bodies[b], y);
   });
   brush.setLineDash([]);
   const peak = Math.max(...page.curves.floor.map(Math.abs), 1e-9);

@@ -5,7 +5,7 @@ const byId = (id) => document.getElementById(id);
 const data = JSON.parse(byId('data').textContent);
 
 const page = {
-  engine: null, worker: null, words: {}, controls: [], values: [], bodies: data.bodies, curves: null,
+  engine: null, worker: null, words: {}, controls: [], values: [], bodies: data.bodies, curves: null, coloured: [],
   time: 0, playing: false, last: 0, colour: 0, japanese: data.language === 'ja', request: 0, changed: false,
   drawable: true, dirty: true, fine: true, slow: false, moving: false, moved: 0, mapped: null, names: [],
   trouble: '', legend: '', updates: [], piece: 0,

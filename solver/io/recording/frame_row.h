@@ -115,6 +115,7 @@ struct FrameRow {
   double floor_displacement[3] = {};  ///< m, high-passed
   double load_factor = 0;             ///< of static runs
   std::vector<AnchorNumbers> anchor;  ///< a
+  bool knows_contacts = true;         ///< else forces of contacts are not known, and zero here
 };
 
 /// The body was not rigid then.

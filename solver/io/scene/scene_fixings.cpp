@@ -75,6 +75,13 @@ class Fixing {
     if (target_.wall && distance(*back) > kind_.reach)
       entry_.fail("to", "is " + millimetres(distance(*back)) + " from \"" + body().name +
                             "\": a stopper leans it towards a wall within " + millimetres(kind_.reach));
+    double above = std::numeric_limits<double>::infinity();  // of the floor
+    for (const Plane& plane : setup_.model.planes)
+      if (plane.normal.z() > 0.5) above = std::min(above, plane.normal.dot(x(*back) - plane.point));
+    constexpr double k_stands = 0.1;  // m
+    if (std::isfinite(above) && above > k_stands)
+      entry_.fail("body", "\"" + body().name + "\" stands " + millimetres(above) +
+                              " above the floor: a stopper lifts the front edge of what stands on it");
     BodyStart& start = setup_.starts[body_];
     if (!start.rotation.isZero(0) || !(depth > k_same))
       entry_.fail("body",

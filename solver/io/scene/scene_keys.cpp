@@ -268,7 +268,9 @@ void add_contact(std::vector<Key>& keys) {
       .absent(law.restitution)
       .only("law", with_restitution)
       .only_in({"dynamic"});
-  rows.number("normal_speed", D::velocity, "m/s", 1e-6, 10, "closing speed below which restitution fades")
+  rows.number(
+          "normal_speed", D::velocity, "m/s", 1e-6, 10,
+          "closing speed below which contact damping fades and bodies bounce more, whatever restitution is")
       .absent(law.normal_speed)
       .only("law", with_restitution)
       .only_in({"dynamic"});

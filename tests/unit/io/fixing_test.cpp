@@ -347,9 +347,9 @@ TEST(Fixing, what_cannot_be_is_told_in_a_line_with_its_place) {
             "s.toml:31:6: fixing.it.to: a pole pushes only, between the top and the ceiling; it leads to the "
             "ceiling, not to \"back\"");
   const std::string low = blocks(fixing("pole", "ceiling"));
-  const auto refused = [&](const std::string& set) {
+  const auto refused = [&](const std::string& set, const std::string& scene = {}) {
     try {
-      parse_scene(low, "s.toml", {set});
+      parse_scene(scene.empty() ? low : scene, "s.toml", {set});
     } catch (const InputError& error) {
       return std::string(error.what());
     }
@@ -364,6 +364,10 @@ TEST(Fixing, what_cannot_be_is_told_in_a_line_with_its_place) {
   EXPECT_EQ(
       refusal(fixing("stopper", "near") + "[[wall]]\nname = \"near\"\nat = [-0.15, 0]\nnormal = [1, 0, 0]\n"),
       "s.toml:30:8: fixing.it.body: \"left\" touches \"near\": a stopper leans it back, which takes a gap");
+  EXPECT_EQ(refused("block.1.at=[0, 0, 0.4]", blocks(fixing("stopper", "back"))),
+            "s.toml:30:8: fixing.it.body: \"left\" stands 407.5 mm above the floor: a stopper lifts the front "
+            "edge of "
+            "what stands on it");
   EXPECT_EQ(
       refused("ceiling.at=1.5"),
       "s.toml:31:6: fixing.it.to: is 307.5 mm below the point of \"left\" from which a pole leads there");

@@ -38,6 +38,7 @@ TEST(PageRows, rows_come_back_as_they_were_packed) {
     EXPECT_EQ(back[i].body, rows[i].body);
     EXPECT_EQ(back[i].anchor, rows[i].anchor);
     EXPECT_EQ(back[i].level, rows[i].level);
+    EXPECT_FALSE(back[i].knows_contacts);
   }
   EXPECT_THROW(unpack_rows(scene.setup.model, bytes.substr(1)), io::InputError);
 }
@@ -341,9 +342,9 @@ TEST_F(ExportPageTest, who_is_hit_is_told_as_the_run_found_it) {
   ASSERT_EQ(run.code, 0) << run.err;
   ASSERT_EQ(topple({"export", "hit.h5", "--page", "page.html"}).code, 0);
   const nlohmann::ordered_json hit = json_of(run.out)["ways"][0]["hit_by"][0];
-  EXPECT_EQ(data_of(bytes_of("page.html"))["hits"],
-            nlohmann::ordered_json::parse(R"([{"place": 0, "body": 0, "time_s": )" +
-                                          hit["time_s"].dump() + "}]"));
+  EXPECT_EQ(
+      data_of(bytes_of("page.html"))["hits"],
+      nlohmann::ordered_json::parse(R"([{"place": 0, "body": 0, "time_s": )" + hit["time_s"].dump() + "}]"));
 }
 
 TEST_F(ExportPageTest, a_scene_is_changed_as_by_run) {

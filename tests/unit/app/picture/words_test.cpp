@@ -96,6 +96,11 @@ TEST(Words, what_nothing_touches_does_not_stand) {
   };
   while (run.time() < 0.2) ASSERT_TRUE(run.advance().ok());
   EXPECT_EQ(words(), "cube: in the air, tilt 0°");
+  io::FrameRow without_contacts = io::frame_row(run);
+  without_contacts.knows_contacts = false;
+  EXPECT_EQ(body_in_words(scene.setup.model, scene.setup.parameters.gravity, without_contacts, 0)
+                .find("in the air"),
+            std::string::npos);
   while (!run.over()) ASSERT_TRUE(run.advance().ok());
   EXPECT_EQ(words(), "cube: standing");
 }

@@ -62,7 +62,8 @@ TEST_F(StudyTest, quick_gives_up_runs_that_are_under_way_when_its_time_is_over) 
   const std::optional<SweepEnd> end = sweep(crew, plan, options);
   ASSERT_TRUE(end);
   EXPECT_EQ(end->run, 0);
-  EXPECT_NE(end->left_in_words(true, "the last").find("--quick left out the last"), std::string::npos);
+  EXPECT_NE(end->left_in_words(true, "the last").find("--quick left out 3, the last first"),
+            std::string::npos);
 }
 
 TEST_F(StudyTest, places_that_cannot_be_written_to_are_refused_before_anything_runs) {
