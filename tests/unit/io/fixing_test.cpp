@@ -364,10 +364,11 @@ TEST(Fixing, what_cannot_be_is_told_in_a_line_with_its_place) {
   EXPECT_EQ(
       refusal(fixing("stopper", "near") + "[[wall]]\nname = \"near\"\nat = [-0.15, 0]\nnormal = [1, 0, 0]\n"),
       "s.toml:30:8: fixing.it.body: \"left\" touches \"near\": a stopper leans it back, which takes a gap");
-  EXPECT_EQ(refused("block.1.at=[0, 0, 0.4]", blocks(fixing("stopper", "back"))),
-            "s.toml:30:8: fixing.it.body: \"left\" stands 407.5 mm above the floor: a stopper lifts the front "
-            "edge of "
-            "what stands on it");
+  EXPECT_EQ(
+      refused("block.1.at=[0, 0, 0.4]", blocks(fixing("stopper", "back"))),
+      "s.toml:30:8: fixing.it.body: \"left\" stands 407.5 mm above the floor: a stopper lifts the front "
+      "edge of "
+      "what stands on it");
   EXPECT_EQ(
       refused("ceiling.at=1.5"),
       "s.toml:31:6: fixing.it.to: is 307.5 mm below the point of \"left\" from which a pole leads there");
