@@ -52,8 +52,8 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
     const double counts = h <= reach ? error.energy : error.greatest();
     if (status.ok() && counts <= 1) {
       if (h == left) w.next.time = state.time + left;
-      const double by_reach =
-          std::isfinite(reach) ? std::min(next_size(h, error.energy, 0), reach) : reach;  // no frame
+      // as far as the energy of explicit substeps adds up; without frames there is none
+      const double by_reach = std::isfinite(reach) ? std::min(next_size(h, error.energy, 0), reach) : reach;
       const double wanted =
           std::min(std::max(next_size(h, error.greatest(), w.most_iterations), by_reach), k_longest_step);
       w.next.step_size = h;

@@ -199,6 +199,16 @@ TEST(Terms, a_share_of_a_strength_is_rounded_and_never_whole_before_it_is) {
   EXPECT_EQ(percent_of(2000, 2000), "100 %");
 }
 
+TEST_F(SummaryTest, an_error_of_time_integration_that_is_the_least_one_is_an_upper_bound) {
+  Json s = summary(scene_, run_, "completed", 0);
+  s["error_estimate"] = error_estimate(scene_.setup, run_.outcome(), run_.outcome());
+  EXPECT_NE(summary_table(s).find("peak tilt less than 0.00057 deg, slide less than 0.1 mm"),
+            std::string::npos)
+      << summary_table(s);
+  s["error_estimate"]["peak_tilt_deg"] = 0.0006;
+  EXPECT_NE(summary_table(s).find("peak tilt 0.0006 deg, "), std::string::npos);
+}
+
 TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
   io::Scene strong =
       io::parse_scene(k_shaken, "s.toml", {"shake.table.amplitude=900 gal", "run.duration=2 s"});
