@@ -128,8 +128,8 @@ StepStatus FramePart::advance_in_substeps(const StepSpan& span, State& next, Int
   for (int k = 1; k <= count && status.ok(); ++k) {
     const StepInputs to =
         k == count ? span.end : StepInputs(span.parameters, span.start.time + k * span.h / count, from);
-    status =
-        advance_central_difference(system_, {span.parameters, from, to, span.h / count, 0}, next, w, energy);
+    status = advance_damped_central_difference(system_, {span.parameters, from, to, span.h / count, 0}, next,
+                                               w, energy);
     from = to;
   }
   return status;
@@ -159,7 +159,8 @@ double FramePart::time_limit(const Parameters& parameters, const State& state) {
     if (const double omega = spin(body, motion_, first); omega * limit > k_turn) limit = k_turn / omega;
     first += body.node_count;
   }
-  return limit;
+  // the substeps are to resolve it, not the step that they make up
+  return std::max(limit, std::min(k_most_substeps * limit, explicit_reach(parameters)));
 }
 
 void FramePart::find_contacts(const StepInputs& now, const State& state) {

@@ -164,10 +164,10 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   if (base.level == ModelLevel::frame) return base;
   if (s.level == ModelLevel::frame) {
     const Body& body = model.bodies[b];
-    const bool calm = !is_bent(model, state, b) && !is_falling(model, parameters, state, b) &&
-                      strain_energy(model, b, parts.sections) <
+    const bool calm = strain_energy(model, b, parts.sections) <
                           k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
-                      yield_ratio(model, b, parts.sections) < k_calm_yield && !would_bend(on, base.level, b);
+                      !is_bent(model, state, b) && yield_ratio(model, b, parts.sections) < k_calm_yield &&
+                      !is_falling(model, parameters, state, b) && !would_bend(on, base.level, b);
     if (!calm)
       s.calm_since = -1;
     else if (s.calm_since < 0)

@@ -64,7 +64,7 @@ double ReducedPart::time_limit(const Parameters& parameters, const State& state)
   double limit = k_longest_step;
   for (const auto& [index, body] : bodies_) {
     body->remember(state.anchors);
-    limit = std::min(limit, body->look_ahead(law, state.bodies[index]));
+    limit = std::min(limit, body->look_ahead(parameters, law, state.bodies[index]));
   }
   return limit;
 }

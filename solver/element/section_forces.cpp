@@ -10,14 +10,6 @@ SectionForces section_forces(const Element& element, const BeamStrain& elastic) 
           element.bending_stiffness.cwiseProduct(elastic.kappa)};
 }
 
-SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi) {
-  SectionForces out = at_point;
-  const double arm = length / 2 * (xi + s);
-  out.moment.y() += out.normal.z() * arm;
-  out.moment.z() -= out.normal.y() * arm;
-  return out;
-}
-
 double section_energy(const Element& element, const SectionForces& forces) {
   return element.length / 2 *
          (forces.normal.cwiseAbs2().cwiseQuotient(element.normal_stiffness).sum() +

@@ -11,7 +11,13 @@ SectionForces section_forces(const Element& element, const BeamStrain& elastic);
 
 /// Section forces at xi in -1..1 along the element from those at the stress point r = -s, by equilibrium:
 ///   My(xi) = My(r) + Vz (L/2)(xi - r), Mz(xi) = Mz(r) - Vy (L/2)(xi - r).
-SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi);
+inline SectionForces forces_along(const SectionForces& at_point, double length, double s, double xi) {
+  SectionForces out = at_point;
+  const double arm = length / 2 * (xi + s);
+  out.moment.y() += out.normal.z() * arm;
+  out.moment.z() -= out.normal.y() * arm;
+  return out;
+}
 
 /// Elastic energy of an element under these forces at its stress point, J.
 double section_energy(const Element& element, const SectionForces& forces);

@@ -16,6 +16,8 @@ namespace topple {
 namespace {
 
 constexpr int k_power_iterations = 400;
+constexpr double k_ahead = 0.1;  // of h^2 times what is fast of the acceleration
+constexpr double k_mean = 0.5;   // of the newest acceleration in its running mean
 
 // Velocity v of a touching node with mass/(h/2) (v - v_half) = rest + contact forces at v.
 Vec3 solve_velocity(const BodySystem& s, const ContactLaw& law, int node, double mass, double h,
@@ -145,18 +147,33 @@ void add_plane_contacts(BodySystem& s, const ContactLaw& of_all, std::span<const
 }
 
 // Velocities to the middle of the step, then positions and rotations to its end.
+template <bool damped>
 void half_step(const BodySystem& s, const State& state, double h, IntegratorScratch& w) {
   w.trial.resize(s.count);
   s.take(state.acceleration, w.acceleration);
   s.take(state.angular_acceleration, w.angular_acceleration);
-  const Four step(h), half(h / 2);
+  if constexpr (damped) {
+    s.take(state.algorithmic_acceleration, w.algorithmic);
+    s.take(state.algorithmic_angular_acceleration, w.algorithmic_angular);
+  }
+  const Four step(h), half(h / 2), ahead(k_ahead * h);
   for (const NodePack& pack : s.node_packs) {
-    const PackVector<Four> v =
-        mul_add(half, gather(w.acceleration.data(), pack.node), gather(w.start.velocity.data(), pack.node));
-    const PackVector<Four> omega = mul_add(half, gather(w.angular_acceleration.data(), pack.node),
-                                           gather(w.start.angular_velocity.data(), pack.node));
+    const PackVector<Four> acceleration = gather(w.acceleration.data(), pack.node),
+                           angular = gather(w.angular_acceleration.data(), pack.node);
+    PackVector<Four> v = mul_add(half, acceleration, gather(w.start.velocity.data(), pack.node)),
+                     omega = mul_add(half, angular, gather(w.start.angular_velocity.data(), pack.node));
     scatter(v, w.trial.velocity.data(), pack.node);
     scatter(omega, w.trial.angular_velocity.data(), pack.node);
+    if constexpr (damped) {
+      const auto run_ahead = [&](const PackVector<Four>& now, std::vector<Vec3>& mean, PackVector<Four>& by) {
+        const PackVector<Four> before = gather(mean.data(), pack.node),
+                               after = mul_add(Four(k_mean), now - before, before);
+        by = mul_add(ahead, now - after, by);
+        scatter(after, mean.data(), pack.node);
+      };
+      run_ahead(acceleration, w.algorithmic, v);
+      run_ahead(angular, w.algorithmic_angular, omega);
+    }
     scatter(mul_add(step, v, gather(w.start.position.data(), pack.node)), w.trial.position.data(), pack.node);
     scatter(normalized(gather(w.start.rotation.data(), pack.node) * exponential(step * omega)),
             w.trial.rotation.data(), pack.node);
@@ -165,10 +182,13 @@ void half_step(const BodySystem& s, const State& state, double h, IntegratorScra
 
 // New accelerations and velocities from `force` and `moment`, and the new motion into `state`: ok, or
 // not_finite.
-StepStatus::Kind take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, State& state) {
+template <bool damped>
+StepStatus::Kind take_accelerations(const BodySystem& s, double h, IntegratorScratch& w, State& state,
+                                    StepEnergy& energy) {
   BodyMotion& trial = w.trial;
   const Four half(h / 2);
   PackVector<Four> odd{0, 0, 0};
+  Four taken(0);
   for (const NodePack& pack : s.node_packs) {
     const PackQuaternion<Four> q = gather(trial.rotation.data(), pack.node);
     const PackVector<Four> acceleration = pack.inverse_mass * gather(s.force.data(), pack.node);
@@ -180,6 +200,14 @@ StepStatus::Kind take_accelerations(const BodySystem& s, double h, IntegratorScr
       angular = pack.inverse_inertia * (moment - cross(omega, pack.inertia * omega));
       omega = mul_add(half, angular, middle);
     }
+    if constexpr (damped) {
+      const PackVector<Four> before = gather(w.acceleration.data(), pack.node),
+                             turning = gather(w.angular_acceleration.data(), pack.node);
+      taken =
+          taken + pack.mass * dot(before - gather(w.algorithmic.data(), pack.node), before + acceleration);
+      taken = taken + dot(turning - gather(w.algorithmic_angular.data(), pack.node),
+                          pack.inertia * (turning + angular));
+    }
     scatter(velocity, trial.velocity.data(), pack.node);
     scatter(omega, trial.angular_velocity.data(), pack.node);
     scatter(acceleration, w.acceleration.data(), pack.node);
@@ -190,9 +218,11 @@ StepStatus::Kind take_accelerations(const BodySystem& s, double h, IntegratorScr
   s.put(trial.rotation, state.rotation);
   s.put(trial.velocity, state.velocity);
   s.put(trial.angular_velocity, state.angular_velocity);
-  for (auto* array : {&state.acceleration, &state.algorithmic_acceleration}) s.put(w.acceleration, *array);
-  for (auto* array : {&state.angular_acceleration, &state.algorithmic_angular_acceleration})
-    s.put(w.angular_acceleration, *array);
+  s.put(w.acceleration, state.acceleration);
+  s.put(w.angular_acceleration, state.angular_acceleration);
+  s.put(damped ? w.algorithmic : w.acceleration, state.algorithmic_acceleration);
+  s.put(damped ? w.algorithmic_angular : w.angular_acceleration, state.algorithmic_angular_acceleration);
+  if constexpr (damped) energy.numerical += k_ahead * h * h / 2 * sum(taken);
   return any_above(dot(odd, odd), 0) ? StepStatus::Kind::not_finite : StepStatus::Kind::ok;
 }
 
@@ -203,16 +233,15 @@ int first_lost(const BodySystem& s, const State& state) {
   return s.node.front();
 }
 
-}  // namespace
-
-StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State& state, IntegratorScratch& w,
-                                      StepEnergy& energy) {
+template <bool damped>
+StepStatus advance(BodySystem& s, const StepSpan& span, State& state, IntegratorScratch& w,
+                   StepEnergy& energy) {
   s.load(state, w.start);
   s.load_memory(state, w.start);
   const std::span<const Vec3> stick(state.stick);
   const ContactLaw& law = span.end.law;
   s.find_contacts(span.start.law, w.start, stick, w.start.position, w.contacts_start);
-  half_step(s, state, span.h, w);
+  half_step<damped>(s, state, span.h, w);
   do s.evaluate_free(span.parameters, span.end, w.trial);
   while (break_sections(s, w.trial));
   s.ends_here = true;
@@ -221,7 +250,7 @@ StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State
   add_plane_contacts(s, law, stick, span.h, w);
   for (int i = 0; i < s.count; ++i) s.clear_fixed(i, s.force[i], s.moment[i]);
   StepStatus status;
-  status.kind = take_accelerations(s, span.h, w, state);
+  status.kind = take_accelerations<damped>(s, span.h, w, state, energy);
   status.time = span.end.time;
   status.body = s.index;
   book_work(s, span, w.start, w.trial, w.contacts_start, s.contacts, energy);
@@ -232,6 +261,18 @@ StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State
     status.element = s.element_at(status.node);
   }
   return status;
+}
+
+}  // namespace
+
+StepStatus advance_central_difference(BodySystem& s, const StepSpan& span, State& state, IntegratorScratch& w,
+                                      StepEnergy& energy) {
+  return advance<false>(s, span, state, w, energy);
+}
+
+StepStatus advance_damped_central_difference(BodySystem& s, const StepSpan& span, State& state,
+                                             IntegratorScratch& w, StepEnergy& energy) {
+  return advance<true>(s, span, state, w, energy);
 }
 
 double explicit_limit(BodySystem& s, const ContactLaw* law, double damping, int* busiest) {

@@ -220,7 +220,7 @@ class CabinetBuilder {
               .first->second;
     }
     const int groups = static_cast<int>(group_of.size());
-    const auto problem_at = [&](double cg_height) {
+    const auto problem_at = [&](double cg_height, double least_share) {
       MomentProblem problem;
       problem.moments = Eigen::MatrixXd::Zero(5, groups);
       problem.nominal = problem.count = Eigen::VectorXd::Zero(groups);
@@ -233,15 +233,25 @@ class CabinetBuilder {
         problem.count[group[i]] += 1;
       }
       problem.nominal = problem.nominal.cwiseQuotient(problem.count);
-      problem.least = Eigen::VectorXd::Constant(groups, k_least_share * spec_.mass / body.node_count);
+      problem.least = Eigen::VectorXd::Constant(groups, least_share * spec_.mass / body.node_count);
       problem.target.resize(5);
       problem.target << spec_.mass, 0, target_inertia(spec_, cg_height) - Vec3::Constant(rotary_sum);
       return problem;
     };
-    const auto masses = within ? fit_masses(problem_at(spec_.cg_height)) : std::nullopt;
+    const auto fit = [&](double least_share) {
+      return within ? fit_masses(problem_at(spec_.cg_height, least_share)) : std::nullopt;
+    };
+    std::optional<Eigen::VectorXd> masses = fit(k_least_share);
+    const double least = k_least_share * spec_.mass / body.node_count;
+    if (masses && masses->minCoeff() <= least)
+      for (const double share : k_greater_shares)
+        if (const auto heavier = fit(share)) {
+          masses = heavier;
+          break;
+        }
     if (!masses) {
       refuse_height(problem_at);
-      refuse_inertia(problem_at(spec_.cg_height), rotary_sum);
+      refuse_inertia(problem_at(spec_.cg_height, k_least_share), rotary_sum);
     }
     std::vector<double> mass(body.node_count);
     for (int i = 0; i < body.node_count; ++i) mass[i] = (*masses)[group[i]];
@@ -296,7 +306,7 @@ class CabinetBuilder {
     double least = 1e300, most = -1e300;
     for (int k = 1 - k_tries; k < k_tries; ++k) {
       const double height = middle + reach * k / k_tries;
-      if (!fit_masses(problem_at(height))) continue;
+      if (!fit_masses(problem_at(height, k_least_share))) continue;
       least = std::min(least, height);
       most = std::max(most, height);
     }
@@ -335,8 +345,10 @@ class CabinetBuilder {
     return spec_.inertia == CabinetSpec::Inertia::solid ? "; add shelves, or use [[block]]" : "";
   }
 
-  /// Least mass of a node over the mean: keeps the explicit step from collapsing.
+  /// Least mass of a node over the mean. Nodes that would be lighter may as well be heavier than that: the
+  /// lightest one sets the explicit step.
   static constexpr double k_least_share = 0.03;
+  static constexpr double k_greater_shares[] = {0.2, 0.16, 0.12, 0.09, 0.06, 0.04};
 
   Model& model_;
   const CabinetSpec& spec_;

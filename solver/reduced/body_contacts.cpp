@@ -138,8 +138,10 @@ void BodyContacts::find_on(int plane, const Vec3& n, double height, const BodySt
   Points* shape = shapes_.data() + now_.count * modes_;
   for (int g = 0; g < count; ++g, ++side) {
     const Group& group = groups_[g];
+    const Four above = Four(height) - side->gap;
+    if (bends && bits(dot(normal, group.place) + above < Four(k_bend * reach_)) == 0) continue;
     const Points at = bends ? place(s, group) : group.place;
-    const Four gap = dot(normal, at) + (Four(height) - side->gap);
+    const Four gap = dot(normal, at) + above;
     const Four::Mask touching = gap < 0;
     if (bits(touching) == 0) continue;
     Touch& touch = now_.add(plane, g, plane * count + g, touching);

@@ -42,7 +42,7 @@ double BodyContacts::next_landing(const BodyState& s, const Vec3& acceleration,
   return first < within ? first : never;
 }
 
-double BodyContacts::look_ahead(const ContactLaw& law, const BodyState& s) const {
+double BodyContacts::look_ahead(const ContactLaw& law, bool quiet, const BodyState& s) const {
   double stiffness = 0, limit = k_longest_step;
   const Vec3 omega = s.rotation * s.angular_velocity;
   const PackMat3 r = rotation_matrix(packed(s.rotation));
@@ -66,7 +66,7 @@ double BodyContacts::look_ahead(const ContactLaw& law, const BodyState& s) const
       }
     }
   }
-  return std::min(limit, bounce_limit(mass_, stiffness));
+  return std::min(limit, (quiet ? k_quiet_steps : 1) * bounce_limit(mass_, stiffness));
 }
 
 }  // namespace topple

@@ -18,9 +18,11 @@ namespace topple {
 namespace {
 
 constexpr double k_stable_turn = 0.6;          // rad per substep, of the stiffest motion on contacts; limit 2
+constexpr double k_quiet_turn = 1.5;           // likewise, of a quiet body
 constexpr double k_free_turn = 2.5;            // rad per substep, of the highest mode
 constexpr double k_small_turn = 0.02;          // rad
 constexpr double k_least_substep = 1. / 4096;  // of a step
+constexpr double k_rounding = 1e-12;           // of a substep
 
 // Of a contact's springs, in any direction, over alpha/L.
 double greatest_stiffness(const ContactLaw& law) {
@@ -96,6 +98,17 @@ Vec3 ReducedBody::drift(double h, BodyState& s) const {
   return unpacked(spin);
 }
 
+// An elastic body on which forces are near balance, while its modes are near rest: what it bears hardly
+// changes as it bounces.
+bool ReducedBody::is_quiet(const Parameters& parameters, const BodyState& s) const {
+  constexpr double k_part = 0.02;
+  if (s.level != ModelLevel::elastic) return false;
+  const double weight = mass_ * parameters.gravity.norm();
+  const double swings = s.rate.square().sum(), holds = (basis_->frequency * s.amplitude).square().sum();
+  return s.force.norm() < k_part * weight && s.moment.norm() < k_part * weight * reach_ &&
+         swings < k_part * k_part * holds;
+}
+
 // The longest substep that is stable on what touches.
 double ReducedBody::stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s) {
   const int m = modes(s);
@@ -103,18 +116,22 @@ double ReducedBody::stable_substep(const Parameters& parameters, const ContactLa
       m > 0 ? k_free_turn / basis_->frequency[m - 1] : std::numeric_limits<double>::infinity();
   if (!contacts_.any() && !anchors_.holds()) return free_limit / parameters.substep_refinement;
   const std::uint64_t touching = contacts_.hash() ^ anchors_.hash();
+  const double turn = is_quiet(parameters, s) ? k_quiet_turn : k_stable_turn;
+  const auto step = [&](double frequency) {
+    return std::min(free_limit, turn / frequency) / parameters.substep_refinement;
+  };
   for (const Known& known : known_)
     if (known.touching == touching && known.alpha == law.alpha && known.q == law.q &&
         known.kind == law.kind && known.level == s.level)
-      return known.step / parameters.substep_refinement;
-  const double step = find_stable_substep(law, s, free_limit);
-  known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.level, step};
+      return step(known.frequency);
+  const double frequency = highest_frequency(law, s);
+  known_[next_known_] = {touching, law.alpha, law.q, law.kind, s.level, frequency};
   next_known_ = (next_known_ + 1) % static_cast<int>(known_.size());
-  return step / parameters.substep_refinement;
+  return step(frequency);
 }
 
-// Not above `free_limit`, with springs and stick springs as implicit as they get, in all directions.
-double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const {
+// rad/s, on what touches, with springs and stick springs as stiff as they get, in all directions.
+double ReducedBody::highest_frequency(const ContactLaw& law, const BodyState& s) const {
   const int m = modes(s), n = 6 + m;
   const Mat3 root = model_.bodies[body_].inertia.llt().matrixL().solve(Mat3::Identity()).transpose();
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 6 + k_modes, 6 + k_modes>;
@@ -135,7 +152,7 @@ double ReducedBody::find_stable_substep(const ContactLaw& law, const BodyState& 
     stiffness += tie.anchor->stiffness * j.transpose() * j;
   }
   const Eigen::SelfAdjointEigenSolver<Matrix> solver(stiffness, Eigen::EigenvaluesOnly);
-  return std::min(free_limit, k_stable_turn / std::sqrt(solver.eigenvalues().tail<1>()[0]));
+  return std::sqrt(solver.eigenvalues().tail<1>()[0]);
 }
 
 BodyEnergy ReducedBody::energy(const ContactLaw& law, const BodyState& s) const {
@@ -372,11 +389,13 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
   w.substep = 0;
   w.from.reset();
   while (!implicit) {
-    const bool last = size >= left;
+    // of equal substeps the last is as long as the others to the bit: its propagator is there
+    const bool last = left <= (1 + k_rounding) * size;
+    const double way = left < (1 - k_rounding) * size ? left : size;
     const StepInputs& from = w.from ? *w.from : start;
     if (!last) w.to.emplace(parameters, from.time + size, from);
     const ExplicitOutcome outcome =
-        explicit_substep(parameters, from, last ? end : *w.to, last ? left : size, s, stick, booked, w);
+        explicit_substep(parameters, from, last ? end : *w.to, way, s, stick, booked, w);
     if (outcome.end == SubstepEnd::reached) {
       if (last) break;
       left -= size;
@@ -393,10 +412,11 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
   return implicit ? advance_implicit(parameters, start, end, h, s, stick, booked) : StepStatus::Kind::ok;
 }
 
-double ReducedBody::look_ahead(const ContactLaw& law, const BodyState& s) const {
+double ReducedBody::look_ahead(const Parameters& parameters, const ContactLaw& law,
+                               const BodyState& s) const {
   double limit = k_longest_step;
   if (s.level == ModelLevel::elastic) {
-    limit = contacts_.look_ahead(law, s);
+    limit = contacts_.look_ahead(law, is_quiet(parameters, s), s);
   } else {
     if ((contacts_.any() || anchors_.holds()) && s.substep > 0) limit = std::min(limit, s.substep);
     if (const double landing = next_landing(s, limit); landing < limit)

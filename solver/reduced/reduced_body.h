@@ -77,7 +77,7 @@ class ReducedBody {
                            ReducedScratch& scratch);
   /// Longest step that resolves contacts and turning, s. Elastic: BodyContacts::look_ahead. Rigid:
   /// BodyState::substep while it touches, and the time to the next touch. Contacts of `s` have been found.
-  double look_ahead(const ContactLaw& law, const BodyState& s) const;
+  double look_ahead(const Parameters& parameters, const ContactLaw& law, const BodyState& s) const;
 
   /// s: the time until an open point reaches a plane, infinite when that is not within `within`; a first
   /// guess at an implicit substep that follows a touch. Contacts of `s` have been found.
@@ -150,6 +150,7 @@ class ReducedBody {
   template <ContactSums sums>
   ContactLoads respond_at(const PreparedLaw& law, const BodyState& s);
   bool known(const StepInputs& now, const BodyState& s) const;
+  bool is_quiet(const Parameters& parameters, const BodyState& s) const;
   template <class F>
   void each_force(const BodyState& s, F f) const;
   void add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u) const;
@@ -172,7 +173,7 @@ class ReducedBody {
                                    StepEnergy& energy, ReducedScratch& w);
   void find_propagator(double h, double damping);
   double stable_substep(const Parameters& parameters, const ContactLaw& law, const BodyState& s);
-  double find_stable_substep(const ContactLaw& law, const BodyState& s, double free_limit) const;
+  double highest_frequency(const ContactLaw& law, const BodyState& s) const;
 
   StepStatus::Kind advance_implicit(const Parameters& parameters, const StepInputs& start,
                                     const StepInputs& end, double h, BodyState& s, std::span<Vec3> stick,
@@ -203,13 +204,13 @@ class ReducedBody {
   // factor on the rates by damping, free_damping_ being damping_time().
   double free_step_ = 0, free_damping_ = 0;
   Amplitudes cosine_, sine_, back_, kick_, damped_;
-  // Stable substeps by what touches.
+  // Highest frequencies by what touches.
   struct Known {
     std::uint64_t touching;
     double alpha, q;
     ContactLawKind kind;
     ModelLevel level;
-    double step;
+    double frequency;
   };
   std::array<Known, 8> known_{};
   int next_known_ = 0;

@@ -457,36 +457,36 @@ void Outcome::observe_anchors(const Model& model, const State& state, std::vecto
 
 namespace {
 
-// f(element, body) of the bodies that have stresses now.
+// f(body) of those that have stresses now.
 template <class F>
-void each_stressed_element(const Model& model, const State& state, F f) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (!traits(state.bodies[b].level).has_stresses) continue;
-    const Body& body = model.bodies[b];
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
-      f(e, static_cast<int>(b));
-  }
+void each_stressed_body(const Model& model, const State& state, F f) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b)
+    if (traits(state.bodies[b].level).has_stresses) f(static_cast<int>(b));
 }
 
 }  // namespace
 
 void Outcome::observe_stresses(const Model& model, const State& state,
                                const std::vector<SectionForces>& sections) {
-  each_stressed_element(model, state, [&](int e, int body) {
-    const Element& element = model.elements[e];
-    BodyOutcome& o = bodies_[body];
-    const Eigen::Vector4d& stress = unit_stress_[model.members[element.member].section];
-    double greatest = 0;
-    const bool yields = std::isfinite(element.capacity[0]);
-    for (int end = 0; end < 2; ++end) {
-      const SectionForces forces = forces_along(sections[e], element.length, element.s, 2 * end - 1);
-      const double normal = std::abs(forces.normal.x()) * stress[0] +
-                            std::abs(forces.moment.y()) * stress[2] + std::abs(forces.moment.z()) * stress[3];
-      const double shear = forces.moment.x() * stress[1];
-      greatest = std::max(greatest, normal * normal + shear * shear);
-      if (!yields) continue;
-      o.peak_yield_ratio =
-          std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
+  each_stressed_body(model, state, [&](int b) {
+    const Body& body = model.bodies[b];
+    BodyOutcome& o = bodies_[b];
+    double greatest = 0;  // squared
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+      const Element& element = model.elements[e];
+      const Eigen::Vector4d& stress = unit_stress_[model.members[element.member].section];
+      const bool yields = std::isfinite(element.capacity[0]);
+      for (const int end : {-1, 1}) {
+        const SectionForces forces = forces_along(sections[e], element.length, element.s, end);
+        const double normal = std::abs(forces.normal.x()) * stress[0] +
+                              std::abs(forces.moment.y()) * stress[2] +
+                              std::abs(forces.moment.z()) * stress[3];
+        const double shear = forces.moment.x() * stress[1];
+        greatest = std::max(greatest, normal * normal + shear * shear);
+        if (!yields) continue;
+        o.peak_yield_ratio =
+            std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
+      }
     }
     if (greatest > o.peak_stress * o.peak_stress) o.peak_stress = std::sqrt(greatest);
   });
@@ -496,7 +496,7 @@ void Outcome::observe_sections(const Model& model, const State& state,
                                const std::vector<SectionForces>& sections, bool goes_on,
                                std::vector<Event>& events) {
   observe_stresses(model, state, sections);
-  each_stressed_element(model, state, [&](int e, int body) {
+  const auto look = [&](int e, int body) {
     const Element& element = model.elements[e];
     const ElementState& now = state.elements[e];
     const bool flows = now.hinge != Hinge::none;
@@ -522,6 +522,10 @@ void Outcome::observe_sections(const Model& model, const State& state,
              : place == 0         ? Hinge::first
                                   : Hinge::second,
              o.hinges);
+  };
+  each_stressed_body(model, state, [&](int b) {
+    const Body& body = model.bodies[b];
+    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) look(e, b);
   });
 }
 

@@ -172,6 +172,59 @@ TEST(CentralDifference, follows_a_linear_oscillator_with_second_order) {
   EXPECT_NEAR(error[1] / error[2], 4, 0.1);
 }
 
+// By the eigenvalues of what a step makes of position, velocity and mean acceleration of an oscillator.
+double damped_radius(double wh) {
+  const double w2 = wh * wh, ahead = 0.1, newest = 0.5;
+  Mat3 step;  // of x, h v and h^2 a'
+  step.row(2) << -newest * w2, 0, 1 - newest;
+  step.row(0) << 1 - (0.5 + ahead) * w2, 1, 0;
+  step.row(0) -= ahead * step.row(2);
+  step.row(1) << -0.5 * w2, 1, 0;
+  step.row(1) -= 0.5 * w2 * step.row(0);
+  return step.eigenvalues().cwiseAbs().maxCoeff();
+}
+
+TEST(CentralDifference, damped_takes_what_is_fast_for_the_step_and_books_it) {
+  const Model model = oscillator();
+  for (const double wh : {0.2, 0.4, 1.2, 1.8}) {
+    SCOPED_TRACE(wh);
+    Parameters p = weightless();
+    p.time_step = wh / k_oscillation;
+    Simulation sim(model, {BodyStart{}}, p);
+    sim.state.position[1].x() += 1e-4;
+    prepare(model, p, sim.state, sim.workspace());
+    BodySystem system(model, 0);
+    IntegratorScratch scratch;
+    StepEnergy energy;
+    // 1 for a vibration of this period and amplitude
+    const auto held = [&] {
+      const double x = sim.state.position[1].x() - 1, v = sim.state.velocity[1].x() / k_oscillation;
+      return (x * x * (1 - wh * wh / 4) + v * v) / 1e-8;
+    };
+    const double radius = damped_radius(wh);
+    const int steps = static_cast<int>(std::min(200., 2 / (1 - radius)));
+    double start = 0;
+    for (int i = 0; i < 2 * steps; ++i) {
+      if (i == steps) {
+        start = held();
+        energy = {};
+      }
+      const StepInputs from(p, i * p.time_step), to(p, from.time + p.time_step);
+      ASSERT_TRUE(
+          advance_damped_central_difference(system, {p, from, to, p.time_step, 0}, sim.state, scratch, energy)
+              .ok());
+    }
+    const double taken = 1 - held() / start;
+    // what is held swings within a period, as the damping goes with the velocity
+    EXPECT_NEAR(std::log(1 - taken), 2 * steps * std::log(radius), 0.1 * 2 * steps * (1 - radius));
+    const double unit = 0.5 * model.node_mass[1] * k_oscillation * k_oscillation * 1e-8;
+    EXPECT_NEAR(energy.numerical, taken * start * unit, 1e-3 * start * unit);
+  }
+  EXPECT_NEAR((1 - damped_radius(0.05)) / 0.05, 0.1 * std::pow(0.05, 3), 0.01 * 0.1 * std::pow(0.05, 3));
+  EXPECT_LT(damped_radius(1.86), 1);
+  EXPECT_GT(damped_radius(1.89), 1);
+}
+
 TEST(CentralDifference, keeps_supports) {
   Model model =
       cantilever(plain_section(3e-4, 4e-8, 9e-8, 6e-8, 0.7, 0.6), steel(), 1, 2, {10, 300, 100}, {5, 4, 3});

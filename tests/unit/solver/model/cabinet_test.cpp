@@ -131,6 +131,16 @@ TEST(Cabinet, panels_have_mass_centre_and_inertia_of_six_thin_sheets) {
         }
 }
 
+// What is inside a full box weighs on the few nodes there; the others still weigh something.
+TEST(Cabinet, nodes_of_a_solid_one_weigh_a_fifth_of_the_mean_where_that_is_possible) {
+  CabinetSpec spec;
+  spec.inertia = CabinetSpec::Inertia::solid;
+  spec.shelves = 3;
+  const Cabinet c = built(spec);
+  const double mean = spec.mass / c.model.node_total();
+  EXPECT_NEAR(std::ranges::min(c.model.node_mass), 0.2 * mean, 1e-6 * mean);
+}
+
 TEST(Cabinet, solid_with_shelves_has_the_inertia_of_a_full_box) {
   CabinetSpec spec;
   spec.inertia = CabinetSpec::Inertia::solid;
