@@ -7,7 +7,7 @@
 
 namespace topple::app {
 
-/// Kept until another instant is shown; while a run plays they follow four times per simulated second.
+/// Kept until another instant is shown; while a run plays they follow twice per simulated second.
 class WaysLines {
  public:
   /// None: the scene has no places.

@@ -506,8 +506,12 @@ void ReducedBody::add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u)
   if (ways.empty()) return;
   Eigen::MatrixXd along(ways.size(), 6);
   for (std::size_t k = 0; k < ways.size(); ++k) along.row(k) = ways[k];
-  const Eigen::VectorXd motion = along.completeOrthogonalDecomposition().solve(
-      Eigen::Map<const Eigen::VectorXd>(left.data(), left.size()));
+  // a way that hardly moves any contact would be gone far along: as a body turns that stands at a wall
+  constexpr double k_distinct = 0.01;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> ways_apart(along.rows(), along.cols());
+  ways_apart.setThreshold(k_distinct);
+  const Eigen::VectorXd motion =
+      ways_apart.compute(along).solve(Eigen::Map<const Eigen::VectorXd>(left.data(), left.size()));
   const Vec3 shift = motion.head<3>(), turn = motion.tail<3>() / reach_;
   for (int i = 0; i < body.node_count; ++i) {
     u.segment<3>(6 * i) += shift + turn.cross(arm(i));

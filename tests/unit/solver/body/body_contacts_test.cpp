@@ -264,6 +264,30 @@ struct Spinning {
   }
 };
 
+// One of its posts touches: to turn about that hardly moves a contact.
+TEST(BodyContacts, what_they_deflect_does_not_turn_a_body_about_the_post_that_touches_a_wall) {
+  topple::Setup setup = paper_cabinet(BodyModel::elastic);
+  Model& model = setup.model;
+  State state = start_state(model, setup.starts);
+  BodyState& s = state.bodies[0];
+  s.level = ModelLevel::elastic;
+  s.rotation = Eigen::AngleAxisd(1e-3, Vec3::UnitZ()) * Eigen::AngleAxisd(-1.4e-4, Vec3::UnitY());
+  s.position.z() -= 1e-4;
+  place_nodes(model, state);
+  double back = 0;
+  for (const ContactPoint& point : model.contact_points)
+    back = std::min(back, state.position[point.node].x() - point.width / 2);
+  model.planes.push_back({"wall", Vec3(back + 3e-4, 0, 0), Vec3::UnitX(), 0});
+  const std::vector<Vec3> stick(2 * model.contact_points.size(), Vec3::Zero());
+  setup.parameters.contact.alpha = 1e4;
+  ReducedBody body(model, 0);
+  body.balance(setup.parameters, StepInputs(setup.parameters, 0), s, stick);
+  const std::vector<Vec3> before = state.position;
+  body.add_residual(s, state);
+  // 100 N at a post deflect this cabinet by some millimetres
+  for (std::size_t i = 0; i < before.size(); ++i) EXPECT_LT((state.position[i] - before[i]).norm(), 0.02);
+}
+
 TEST(BodyContacts, landing_of_a_spinning_body_is_foreseen_to_the_third_order) {
   // its lowest point comes down by as much in t as it is above the floor
   double error[2];
