@@ -15,7 +15,7 @@ namespace topple {
 StepStatus advance_central_difference(BodySystem& system, const StepSpan& span, State& state,
                                       IntegratorScratch& scratch, StepEnergy& energy);
 
-/// Likewise, but positions run ahead by 0.1 h^2 (a - a'), a the acceleration and a' its running mean,
+/// Likewise, but positions run ahead by 0.1 h^2 (a - a'), a the acceleration and a' (a' + a)/2 at each step,
 /// State::algorithmic_acceleration: Tchamwa & Wielgosz's (1999) dissipation, of high frequencies alone. A
 /// mode of angular frequency w that is slow for the step has the ratio 0.1 (w h)^3 to critical, none more
 /// than 0.07; stable below w h = 1.87. What it takes is numerical energy.

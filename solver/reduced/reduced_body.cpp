@@ -506,7 +506,7 @@ void ReducedBody::add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u)
   if (ways.empty()) return;
   Eigen::MatrixXd along(ways.size(), 6);
   for (std::size_t k = 0; k < ways.size(); ++k) along.row(k) = ways[k];
-  // a way that hardly moves any contact would be gone far along: as a body turns that stands at a wall
+  // what hardly moves a contact stays out, or a small gap takes a large motion: a turn about a post at a wall
   constexpr double k_distinct = 0.01;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> ways_apart(along.rows(), along.cols());
   ways_apart.setThreshold(k_distinct);

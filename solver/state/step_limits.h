@@ -14,7 +14,7 @@ inline constexpr double k_least_step = 1e-8;    ///< s, a run that needs shorter
 inline constexpr double k_longest_step = 0.05;  ///< s
 inline constexpr double k_first_step = 1e-4;    ///< s, tried first
 inline constexpr double k_contact_part = 20;    ///< steps per period of a body on its contacts
-inline constexpr double k_quiet_steps = 5;      ///< of those in one, while it hardly bounces
+inline constexpr double k_quiet_steps = 5;      ///< times as long is a step while it hardly bounces
 inline constexpr double k_closing_part = 4;     ///< steps in which a closing contact moves by its L
 inline constexpr double k_turn = 0.1;           ///< rad per step
 /// rad, of a contact's bounce, in the first implicit substep after a touch.
