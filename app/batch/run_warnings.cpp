@@ -12,6 +12,7 @@
 #include "solver/contact/contact_law.h"
 #include "solver/contact/contact_period.h"
 #include "solver/frame/integrator.h"
+#include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
 #include "solver/study/stability/stability_limits.h"
@@ -25,6 +26,7 @@ constexpr double k_good_balance = 1e-3;         // energy that nothing explains
 constexpr double k_hardly_lifts = 1e-6;         // m, all bodies: an energy that tells nothing
 constexpr double k_numerical = 0.1;             // energy that the integrator takes or gives
 constexpr double k_yielded = 1.05;              // of the yield surface: frames stay within it
+constexpr double k_stretched = 0.3;             // of the length of an element
 constexpr double k_sunk = 0.1;                  // m below a floor
 constexpr double k_switched = 0.01;             // energy that changes of models give or take
 constexpr double k_resolved_bounce = 10;        // steps of a bounce on the contacts
@@ -123,7 +125,14 @@ void warn_of_stress(const Run& run, Warnings& list) {
       yields = yields || material.yield > 0;
       stiffest = std::max(stiffest, material.young);
     }
-    if (const double ratio = bodies[b].peak_yield_ratio.value_or(0); ratio > k_yielded)
+    const auto was = [&](ModelLevel level) {
+      const std::vector<LevelChange>& changes = bodies[b].level_changes;
+      return bodies[b].level == level || ranges::find(changes, level, &LevelChange::level) != changes.end();
+    };
+    // ends of frames with hinges at midpoints bear more
+    const bool by_ends = model.scheme == Scheme::midpoint && was(ModelLevel::frame);
+    if (const double ratio = bodies[b].peak_yield_ratio.value_or(0);
+        ratio > k_yielded && was(ModelLevel::elastic) && !by_ends)
       list.push_back(fmt::format(
           "the stress in body \"{}\", {:.4g} MPa, is beyond yield while the body was elastic, a section "
           "bore {:.3g} of its strength: no steel does; model = \"frame\", or \"auto\" where stresses are "
@@ -135,6 +144,31 @@ void warn_of_stress(const Run& run, Warnings& list) {
           "hinges",
           body.name, 1e-6 * bodies[b].peak_stress));
   }
+}
+
+// Of the element whose nodes flowed apart or together most.
+void warn_of_stretch(const Run& run, Warnings& list) {
+  const Model& model = run.setup().model;
+  const State& state = run.state();
+  double most = 0;
+  int worst = -1;
+  for (std::size_t e = 0; e < model.elements.size(); ++e) {
+    const Element& element = model.elements[e];
+    if (!std::isfinite(element.capacity[0]) || state.elements[e].hinge == Hinge::broken) continue;
+    const auto& [a, b] = element.node;
+    const double length = (model.node_position[b] - model.node_position[a]).norm(),
+                 stretch = (state.position[b] - state.position[a]).norm() / length - 1;
+    if (!(std::abs(stretch) > std::max(k_stretched, std::abs(most)))) continue;
+    most = stretch;
+    worst = static_cast<int>(e);
+  }
+  if (worst < 0) return;
+  const Member& member = model.members[model.elements[worst].member];
+  list.push_back(fmt::format(
+      "element {} of member \"{}\" of \"{}\" became {:.0f} % {}, which no steel does: what is computed from "
+      "there on is no prediction; with a fracture_strain of its material it breaks",
+      worst - member.first_element, member.name, model.bodies[member.body].name, 100 * std::abs(most),
+      most > 0 ? "longer" : "shorter"));
 }
 
 // Of fixed steps; adaptive ones follow what happens.
@@ -225,6 +259,7 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_depth(run, list);
   warn_of_shakes(run.parameters().shakes, run.setup().run.output_rate, list);
   warn_of_stress(run, list);
+  warn_of_stretch(run, list);
   warn_of_pieces(run, list);
   warn_of_instability(run, list);
   if (is_static(run.setup())) {

@@ -9,10 +9,12 @@
 #include <set>
 
 #include "app/batch/run_warnings.h"
+#include "solver/body/anchors.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
 #include "solver/contact/nearest_places.h"
 #include "solver/contact/proximity.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/reduced/tipping.h"
 #include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
@@ -47,6 +49,13 @@ Place nearest_member(const Model& model, const State& start, const Body& body, c
 
 void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::string>& list) {
   const Model& model = setup.model;
+  const std::vector<AnchorForce> forces = anchor_forces(model, start);
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    if (const Anchor& anchor = model.anchors[k]; std::abs(forces[k].tension) > anchor.strength)
+      list.push_back(fmt::format(
+          "anchor \"{}\" is put in with {:.4g} N, above its strength of {:.4g} N: unless it slackens as "
+          "its body settles, it breaks at once",
+          anchor.name, std::abs(forces[k].tension), anchor.strength));
   for (const Anchor& anchor : model.anchors) {
     const ModelLevel level = base_level(model, setup.parameters, anchor.body).level;
     if (level != ModelLevel::elastic && level != ModelLevel::frame) continue;
@@ -175,14 +184,19 @@ std::string soft_contact_warning(const Setup& setup, const Parameters& p) {
   const std::optional<double> early = early_tipping(model, p);
   const std::optional<double> rigid = rigid_alpha(model, p.contact, p.gravity);
   if (!early || !rigid || *early <= k_early) return "";
-  return fmt::format(
+  const double most = io::key_of(Edit::Key::alpha).most, enough = alpha_for_tipping(model, p);
+  std::string words = fmt::format(
       "contact.alpha = {:.4g} kgf is soft: under a steady push a body lifts a side, and may tip, at up to "
-      "{:.0f} % less acceleration than on a rigid floor, in a shake at still less; {:.0f} kgf keeps that of "
-      "a steady push below {:g} %; no alpha at all takes {:.0f} kgf, with which it lands as on a rigid floor "
-      "too",
-      p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.),
-      rounded_up(alpha_for_tipping(model, p) / k_standard_gravity), 100 * k_hardly,
-      rounded_up(*rigid / k_standard_gravity));
+      "{:.0f} % less acceleration than on a rigid floor, in a shake at still less; ",
+      p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.));
+  if (enough < most)
+    words += fmt::format("{:.0f} kgf keeps that of a steady push below {:g} %; ",
+                         rounded_up(enough / k_standard_gravity), 100 * k_hardly);
+  return words + (*rigid < most ? fmt::format("no alpha at all takes {:.0f} kgf, with which it lands as on a "
+                                              "rigid floor too",
+                                              rounded_up(*rigid / k_standard_gravity))
+                                : fmt::format("no alpha at all takes {:.0f} kgf, the greatest there is",
+                                              most / k_standard_gravity));
 }
 
 std::string bending_warning(const Setup& setup) {

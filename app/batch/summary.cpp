@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <span>
+#include <ranges>
+#include <string_view>
+#include <vector>
 
 #include "app/batch/load_steps.h"
 #include "app/batch/run_warnings.h"
@@ -120,20 +122,21 @@ ordered_json anchors(const Run& run) {
   return out;
 }
 
-/// What moved frames; the first body, where none was one.
-std::string_view integrator(const Run& run) {
+/// All that moved a body, and floors and walls of beams.
+std::string integrators(const Run& run) {
   const Model& model = run.setup().model;
-  const Integrator frames = run.parameters().integrator;
-  const std::span<const BodyOutcome> bodies =
-      std::span(run.outcome().bodies()).first(static_cast<std::size_t>(model.furniture_total()));
-  const auto was_frame = [](const BodyOutcome& o) {
-    return !o.level || std::ranges::any_of(o.level_changes, [](const LevelChange& change) {
-      return traits(change.level).moves_nodes;
-    });
-  };
-  const bool any = bodies.size() < model.bodies.size() || std::ranges::any_of(bodies, was_frame);
-  return any || bodies.empty() ? traits(frames).word
-                               : integrator_of(*bodies.front().level, model, run.parameters());
+  std::vector<ModelLevel> levels;
+  for (const BodyOutcome& o : run.outcome().bodies()) {
+    for (const LevelChange& change : o.level_changes) levels.push_back(change.level);
+    levels.push_back(o.level.value_or(ModelLevel::frame));
+  }
+  std::vector<std::string_view> found;
+  for (const ModelLevel level : levels)
+    for (const auto& word :
+         std::views::split(integrator_of(level, model, run.parameters()), std::string_view(", ")))
+      if (const std::string_view one(word.begin(), word.end()); std::ranges::find(found, one) == found.end())
+        found.push_back(one);
+  return fmt::format("{}", fmt::join(found, ", "));
 }
 
 /// The mean of an adaptive run.
@@ -220,7 +223,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["wall_s"] = number(wall_s);
   out["realtime_factor"] =
       wall_s > 0 && !is_static(run.setup()) ? number(state.time / wall_s) : ordered_json(nullptr);
-  out["integrator"] = is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(integrator(run));
+  out["integrator"] = is_static(run.setup()) ? ordered_json(nullptr) : ordered_json(integrators(run));
   out["time_step_s"] = time_step(run);
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());

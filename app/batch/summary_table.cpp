@@ -66,9 +66,24 @@ std::string static_head(const ordered_json& s) {
       s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
       s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
   const ordered_json& steps = s["static"];
+  double greatest = 0;
+  for (const ordered_json& step : steps)
+    if (step["factor"].is_number()) greatest = std::max(greatest, std::abs(step["factor"].get<double>()));
+  constexpr double k_nothing = 1e-9;
+  const auto carries_nothing = [&](const ordered_json& step) {
+    return step["converged"].get<bool>() && step["stable"] == false &&
+           std::abs(step["factor"].get<double>()) < k_nothing * greatest;
+  };
   for (std::size_t k = 0; k < steps.size();) {
     const ordered_json& first = steps[k];
     std::size_t end = k + 1;  // of those of which the same is to be said
+    if (carries_nothing(first)) {
+      while (end < steps.size() && std::abs(steps[end]["factor"].get<double>()) < k_nothing * greatest) ++end;
+      out += fmt::format("load factor 0 in {} step{}: a mechanism, which carries nothing\n", end - k,
+                         end - k > 1 ? "s" : "");
+      k = end;
+      continue;
+    }
     while (end < steps.size() &&
            std::ranges::all_of(std::array{"converged", "loss", "negative_pivots"},
                                [&](const char* key) { return steps[end][key] == first[key]; }))
@@ -107,10 +122,12 @@ std::string own_frictions(const ordered_json& s) {
 // What moved bodies on the levels that they were on.
 std::string integrators(const ordered_json& s) {
   std::set<ModelLevel> levels, otherwise;
+  std::string of_frames;
   const auto take = [&](const ordered_json& of) {
     const ModelLevel level = level_called(of["model"].get<std::string>()).kind;
     levels.insert(level);
     const LevelIntegrator& integrator = row_of(k_level_integrators, level);
+    if (level == ModelLevel::frame) of_frames = of["integrator"].get<std::string>();
     if (integrator.differs && of["integrator"] == integrator.otherwise) otherwise.insert(level);
   };
   for (const auto& b : s["bodies"]) {
@@ -124,7 +141,7 @@ std::string integrators(const ordered_json& s) {
        {ModelLevel::frame, ModelLevel::elastic, ModelLevel::rigid, ModelLevel::planar}) {
     if (!levels.contains(level)) continue;
     const Phrase* const own = model_words::moved_by(level, otherwise.contains(level));
-    std::string words = own ? std::string(own->english) : s["integrator"].get<std::string>();
+    std::string words = own ? std::string(own->english) : of_frames;
     if (level == ModelLevel::frame && levels.size() > 1) words += " (frames)";
     if (level == ModelLevel::planar) words += " (planar)";
     all.push_back(std::move(words));

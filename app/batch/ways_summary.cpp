@@ -97,7 +97,7 @@ std::string ways_in_words(const ordered_json& ways, double person) {
       if (!way["length_m"].is_null())
         out += fmt::format(", shortest {:.1f} m long", way["length_m"].get<double>());
     } else if (way["caught"].get<bool>()) {
-      out += "cannot leave, " + joined(way["blocked_by"]) + " is where they are";
+      out += "cannot leave, blocked where they are by " + joined(way["blocked_by"]);
     } else {
       out += fmt::format("no way to {} for a person of {:g} m", way["door"].get<std::string>(), person);
       if (way["widest_m"].get<double>() > 0)

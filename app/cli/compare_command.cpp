@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -19,6 +20,7 @@
 #include "app/support/interrupt.h"
 #include "app/support/log.h"
 #include "app/support/terms.h"
+#include "solver/io/edit/edit_text.h"
 #include "solver/io/edit/scene_difference.h"
 #include "solver/io/edit/scene_save.h"
 #include "solver/io/recording/recording.h"
@@ -47,24 +49,23 @@ struct Side {
   io::Scene started;     ///< with edits made before the first step, which it began with
   ordered_json summary;  ///< null: of a recording whose run was interrupted
   int exit_code = k_done;
-  std::size_t edits = 0;  ///< while it ran
+  std::vector<LoggedEdit> edits;  ///< while it ran
   std::unique_ptr<TemporaryFile> temporary;
   std::unique_ptr<io::Recording> recording;  ///< of a scene only when pictures are wanted
 };
 
-/// Takes edits made before the first step into what the run started with, where a scene can say it; counts
-/// the others.
+/// Takes edits made before the first step into what the run started with, where a scene can say it; keeps the
+/// others.
 void take_edits(Side& side, const History& history, std::int32_t branch) {
-  const std::vector<LoggedEdit> edits = history.edits_on_way_to(branch);
-  const auto later = std::ranges::count_if(edits, [](const LoggedEdit& edit) { return edit.step > 0; });
+  const auto is_later = [](const LoggedEdit& edit) { return edit.step > 0; };
   side.started = side.scene;
-  side.edits = edits.size();
-  if (side.edits == static_cast<std::size_t>(later)) return;
+  side.edits = history.edits_on_way_to(branch);
+  if (std::ranges::all_of(side.edits, is_later)) return;
   try {
     const io::SavedScene saved =
         io::edited_scene(side.scene, parameters_at(side.scene.setup, history, branch, 0));
     side.started = io::parse_scene(saved.text, side.scene.name, {}, io::files_of(side.scene));
-    side.edits = static_cast<std::size_t>(later);
+    std::erase_if(side.edits, std::not_fn(is_later));
   } catch (const io::InputError&) {  // they are told as made while it ran
   }
 }
@@ -126,6 +127,11 @@ bool run_side(Side& side, bool pictures, bool quiet) {
   return run.exit_code != k_interrupted;
 }
 
+std::string in_words(const LoggedEdit& edit, const Model& model) {
+  return fmt::format("{} = {} from {:.3f} s on", io::scene_key(edit.edit, model),
+                     io::edit_value_text(edit.edit, io::EditSpelling::shown), edit.time);
+}
+
 ordered_json parameters(const Side& a, const Side& b) {
   ordered_json list = ordered_json::array();
   const auto text = [](const std::optional<std::string>& value) {
@@ -133,9 +139,13 @@ ordered_json parameters(const Side& a, const Side& b) {
   };
   for (const io::SceneDifference& d : io::differences(a.started, b.started))
     list.push_back({{"key", d.key}, {"a", text(d.a)}, {"b", text(d.b)}});
-  if (a.edits != b.edits || a.edits > 0)
-    list.push_back(
-        {{"key", "edits while it ran"}, {"a", std::to_string(a.edits)}, {"b", std::to_string(b.edits)}});
+  for (std::size_t k = 0; k < std::max(a.edits.size(), b.edits.size()); ++k) {
+    const auto edit = [k](const Side& side) {
+      return k < side.edits.size() ? ordered_json(in_words(side.edits[k], side.scene.setup.model))
+                                   : ordered_json(nullptr);
+    };
+    list.push_back({{"key", fmt::format("edit {} while it ran", k + 1)}, {"a", edit(a)}, {"b", edit(b)}});
+  }
   return list;
 }
 
@@ -147,7 +157,7 @@ ordered_json outcome(const Side& side, const std::string& name) {
     ordered_json out;
     for (const char* key :
          {"overturned", "overturn_time_s", "peak_tilt_deg", "final_tilt_deg", "peak_slide_m", "final_slide_m",
-          "first_uplift_s", "first_impact_s", "peak_stress_Pa"})
+          "first_uplift_s", "first_impact_s", "peak_stress_Pa", "hinges", "fractures"})
       out[key] = body[key];
     return out;
   }
@@ -188,13 +198,24 @@ ordered_json paired(const Side& a, const Side& b, const char* list, const char* 
   return out;
 }
 
+/// Of those of a static run that have an equilibrium; null: none has, or it is not one.
+ordered_json greatest_load(const Side& side) {
+  ordered_json greatest = nullptr;
+  if (side.summary.is_null() || !side.summary.contains("static")) return greatest;
+  for (const ordered_json& step : side.summary["static"])
+    if (step["converged"].get<bool>() && (greatest.is_null() || step["factor"] > greatest))
+      greatest = step["factor"];
+  return greatest;
+}
+
 ordered_json side_json(const Side& side) {
   return {{"source", side.source},
           {"scene", side.scene.name},
           {"title", side.scene.title},
           {"status", side.summary.is_null() ? ordered_json("interrupted") : side.summary["status"]},
           {"counted_from_s", side.summary.is_null() ? 0. : side.summary.value("counted_from_s", 0.)},
-          {"simulated_s", side.summary.is_null() ? ordered_json(nullptr) : side.summary["simulated_s"]}};
+          {"simulated_s", side.summary.is_null() ? ordered_json(nullptr) : side.summary["simulated_s"]},
+          {"greatest_load_factor", greatest_load(side)}};
 }
 
 /// A table of three columns.
@@ -225,6 +246,10 @@ std::string text(const ordered_json& body, const char* key, double unit, int dec
   return fmt::format("{:.{}f}", body[key].get<double>() / unit, decimals);
 }
 
+std::string load_factor(const ordered_json& factor) {
+  return factor.is_null() ? "-" : fmt::format("{:.6g}", factor.get<double>());
+}
+
 void add_outcome(Table& table, const ordered_json& body) {
   const std::string name = body["name"];
   const ordered_json &a = body["a"], &b = body["b"];
@@ -244,6 +269,9 @@ void add_outcome(Table& table, const ordered_json& body) {
   number("first uplift, s", "first_uplift_s", 1, 3);
   number("first impact, s", "first_impact_s", 1, 3);
   number("peak stress, MPa", "peak_stress_Pa", 1e6, 2);
+  const auto any = [](const ordered_json& o, const char* key) { return !o.is_null() && o[key] != 0; };
+  for (const char* key : {"hinges", "fractures"})
+    if (any(a, key) || any(b, key)) number(key, key, 1, 0);
 }
 
 std::string holds(const ordered_json& anchor) {
@@ -279,6 +307,9 @@ std::string tables(const ordered_json& result) {
   if (result["a"]["counted_from_s"] != result["b"]["counted_from_s"])
     outcomes.row("peaks, times and anchors counted from, s", text(result["a"], "counted_from_s", 1, 3),
                  text(result["b"], "counted_from_s", 1, 3));
+  if (const char* const key = "greatest_load_factor";
+      result["a"][key] != nullptr || result["b"][key] != nullptr)
+    outcomes.row("greatest load factor", load_factor(result["a"][key]), load_factor(result["b"][key]));
   for (const ordered_json& body : result["bodies"]) add_outcome(outcomes, body);
   for (const ordered_json& one : result["anchors"])
     outcomes.row(fmt::format("{} on {}: greatest force, N", one["name"].get<std::string>(),

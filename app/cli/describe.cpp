@@ -61,7 +61,8 @@ ordered_json describe(const LoggedEdit& logged) {
           {"step", logged.step},
           {"time_s", logged.time},
           {"key", io::edit_key(logged.edit)},
-          {"value", value_json(logged.edit)}};
+          {"value", value_json(logged.edit)},
+          {"shown", io::edit_value_text(logged.edit, io::EditSpelling::shown)}};
 }
 
 /// The ledger at one instant, named as in the summary.

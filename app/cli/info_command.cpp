@@ -112,6 +112,9 @@ std::string info_table(const ordered_json& d) {
   if (d["branches"].size() > 1 || !d["edits"].empty())
     out += fmt::format("{}, {}\n", counted(d["branches"].size(), "branch", "branches"),
                        counted(d["edits"].size(), "edit", "edits"));
+  for (const auto& e : d["edits"])
+    out += fmt::format("{:>10.4f} s  branch {}: {} = {}\n", e["time_s"].get<double>(), e["branch"].get<int>(),
+                       e["key"].get<std::string>(), e["shown"].get<std::string>());
   for (const auto& e : d["events"])
     out += (is_static(d) ? fmt::format("load step {:>4}", e["step"].get<long>())
                          : fmt::format("{:>10.4f} s", e["time_s"].get<double>())) +

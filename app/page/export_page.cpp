@@ -38,11 +38,12 @@ struct PageRows {
   std::vector<io::FrameRow> kept;
   std::size_t stride = 1;
   std::vector<BodyEnd> ends;  ///< as far as rows tell
-  io::FrameRow most_tilted;   ///< with the greatest tilt over critical angle
+  std::optional<io::FrameRow> newest;
+  io::FrameRow most_tilted;  ///< with the greatest tilt over critical angle
   RunExtent extent;
 };
 
-/// What rows tell of a body: the tilt has been beyond the critical angle since.
+/// What rows tell of a body: the tilt has been beyond the critical angle since, between two rows.
 void observe(const io::FrameRow& row, PageRows& rows, double& greatest) {
   for (std::size_t b = 0; b < rows.ends.size(); ++b) {
     const io::BodyNumbers& body = row.body[b];
@@ -54,8 +55,12 @@ void observe(const io::FrameRow& row, PageRows& rows, double& greatest) {
     }
     if (!has_angle || body.tilt <= body.critical_angle)
       end.overturned.reset();
-    else if (!end.overturned)
-      end.overturned = row.time;
+    else if (!end.overturned) {
+      const auto beyond = [b](const io::FrameRow& of) { return of.body[b].tilt - of.body[b].critical_angle; };
+      const double now = beyond(row), before = rows.newest ? beyond(*rows.newest) : 0;
+      end.overturned =
+          before < 0 ? row.time - (row.time - rows.newest->time) * now / (now - before) : row.time;
+    }
     if (const double share = has_angle ? body.tilt / body.critical_angle : 0; share > greatest)
       greatest = share, rows.most_tilted = row;
   }
@@ -76,6 +81,7 @@ std::optional<PageRows> rows_of(const io::Scene& scene, const PageRun& run,
     rows.extent.add(scene.setup, scene.setup.parameters, row);
     if (rows.kept.empty()) rows.most_tilted = row;
     observe(row, rows, greatest);
+    rows.newest = row;
     if (i % rows.stride == 0 || i + 1 == run.rows) rows.kept.push_back(std::move(row));
   }
   if (rows.kept.empty()) throw io::InputError("holds no instant that can be shown");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "solver/io/common/errors.h"
@@ -66,6 +67,29 @@ std::vector<io::FrameRow> unpack_rows(const Model& model, std::string_view bytes
     if (!is_finite(rows.back())) rows.pop_back();
   }
   return rows;
+}
+
+double floor_along(const io::FrameRow& row, const std::vector<Shake>& shakes) {
+  return shakes.empty() ? 0 : Vec3(row.floor_acceleration).dot(shakes.front().direction);
+}
+
+double floor_peak(const std::vector<io::FrameRow>& rows, const std::vector<Shake>& shakes) {
+  constexpr double k_interval = 1e-3;  // s: off by 0.1 % of the peak at most up to 14 Hz
+  constexpr double k_same = 1e-5;      // m/s^2, times of rows are rounded
+  double peak = 0;
+  bool unchanged = !rows.empty();
+  for (const io::FrameRow& row : rows) {
+    peak = std::max(peak, std::abs(floor_along(row, shakes)));
+    unchanged =
+        unchanged && (Vec3(row.floor_acceleration) - floor_acceleration(shakes, row.time)).norm() < k_same;
+  }
+  if (!unchanged || shakes.empty()) return peak;
+  const auto steps = static_cast<int>((rows.back().time - rows.front().time) / k_interval);
+  for (int k = 0; k < steps; ++k) {
+    const Vec3 floor = floor_acceleration(shakes, rows.front().time + k * k_interval);
+    peak = std::max(peak, std::abs(floor.dot(shakes.front().direction)));
+  }
+  return peak;
 }
 
 }  // namespace topple::app

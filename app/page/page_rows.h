@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/io/recording/frame_row.h"
+#include "solver/model/excitation.h"
 #include "solver/model/model.h"
 
 namespace topple::app {
@@ -27,5 +28,10 @@ std::string pack_rows(const std::vector<io::FrameRow>& rows);
 /// The inverse; what was left out is zero, and FrameRow::knows_contacts false. Throws io::InputError where
 /// the bytes are no rows of this model.
 std::vector<io::FrameRow> unpack_rows(const Model& model, std::string_view bytes);
+
+/// Acceleration of the floor in a row along the first of `shakes`, m/s^2; 0 without shakes.
+double floor_along(const io::FrameRow& row, const std::vector<Shake>& shakes);
+/// The greatest while the rows last: between them too, where they show the motion of the shakes as these are.
+double floor_peak(const std::vector<io::FrameRow>& rows, const std::vector<Shake>& shakes);
 
 }  // namespace topple::app

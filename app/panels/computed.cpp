@@ -53,7 +53,8 @@ std::string integrators_in_words(const Player& player) {
   const std::optional<io::FrameRow> now = player.row();
   if (!now) return "";
   const std::set<std::uint8_t> levels(now->level.begin(), now->level.end());
-  if (levels == std::set{static_cast<std::uint8_t>(ModelLevel::frame)}) return "";
+  const bool as_chosen = !moves_otherwise(ModelLevel::frame, player.scene().setup.model, player.parameters());
+  if (as_chosen && levels == std::set{static_cast<std::uint8_t>(ModelLevel::frame)}) return "";
   std::string all;
   for (const std::uint8_t level : levels)
     all += (all.empty() ? "" : "; ") + moved_by(player, static_cast<ModelLevel>(level));

@@ -17,7 +17,7 @@ std::optional<double> step_taken(const Player& player);
 std::string computed_in_words(const Player& player, std::size_t body);
 
 /// "of frames; at work now: central differences": what moves bodies at the instant that is shown. Empty: the
-/// integrator that is chosen moves all of them, or there is no instant.
+/// integrator that is chosen alone moves all of them, or there is no instant.
 std::string integrators_in_words(const Player& player);
 
 }  // namespace topple::app

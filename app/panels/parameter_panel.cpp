@@ -118,16 +118,19 @@ class Row {
     // An adaptive run takes other steps than the one that is kept for when it ends to be one.
     const bool adaptive = look.key == Edit::Key::time_step && player_.parameters().adaptive;
     const std::optional<double> taken = adaptive ? step_taken(player_) : std::nullopt;
-    float number = static_cast<float>(taken ? *taken / unit : shown(edit_.value));
+    float number = static_cast<float>(taken      ? *taken / unit
+                                      : adaptive ? player_.parameters().time_step / unit
+                                                 : shown(edit_.value));
     std::string format = adaptive ? say(taken ? k_step_auto : k_step_auto_unknown) : look.format;
     if (number >= k_no_exponent && !adaptive) format = std::string("%.0f ") + look.unit;
-    const auto [low, high] = range(look, number, shown(scene_value_), unit);
+    const bool auto_in_scene = look.key == Edit::Key::time_step && player_.scene().setup.parameters.adaptive;
+    const auto [low, high] = range(look, number, auto_in_scene ? number : shown(scene_value_), unit);
     const ImGuiSliderFlags flags = look.logarithmic ? ImGuiSliderFlags_Logarithmic : 0;
     const bool changed =
         ImGui::SliderScalar("##value", ImGuiDataType_Float, &number, &low, &high, format.c_str(), flags);
     if (ImGui::IsItemActivated()) player_.begin_edit();
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive())
-      ImGui::SetTooltip("%s", (adaptive ? say(k_step_auto_about) : about(look, shown(scene_value_))).c_str());
+      ImGui::SetTooltip("%s", (adaptive ? say(k_step_auto_about) : about(look)).c_str());
     // While somebody types, what stands there so far is no value yet.
     ImGuiStorage& typed = *ImGui::GetStateStorage();
     const ImGuiID item = ImGui::GetID("typed");
@@ -202,10 +205,11 @@ class Row {
     }
     return {std::min(static_cast<float>(low), number), std::max(static_cast<float>(high), number)};
   }
-  std::string about(const Slider& look, double in_scene) const {
+  std::string about(const Slider& look) const {
     if (look.key == Edit::Key::direction) return say(k_key_about, name(), say(look.about));
-    return say(k_slider_about, name(), say(look.about, key_.about), io::range_text(key_), in_scene,
-               look.unit);
+    const Edit in_scene{edit_.key, edit_.index, scene_value_};
+    return say(k_slider_about, name(), say(look.about, key_.about), io::range_text(key_),
+               io::edit_value_text(in_scene, io::EditSpelling::shown));
   }
   void end(float at = 0) {
     ImGui::SameLine(at);
@@ -304,8 +308,7 @@ void draw_model(const Parameter& of) {
 }
 
 void draw_integrator(const Parameter& of) {
-  of.row().choice(say(k_integrator), k_integrator_about,
-                  [](int number) { return number != k_automatic_integrator; });
+  of.row().choice(say(k_integrator), k_integrator_about, [](int) { return true; });
   if (const std::string words = integrators_in_words(of.player); !words.empty()) write_below(words);
 }
 

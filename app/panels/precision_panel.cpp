@@ -251,9 +251,7 @@ std::optional<std::vector<Edit>> edits_to(const Player& player, const Parameters
   for (const auto& [key, of] : editable(model, now)) {
     if (!is_setting(key, of)) continue;
     const Edit edit{key, of, edited_value(wanted, key, of)};
-    const bool step = key == Edit::Key::time_step;
-    if (step ? wanted.adaptive : false) continue;
-    if (edit.value == edited_value(now, key, of) && !(step && now.adaptive)) continue;
+    if (edit.value == edited_value(now, key, of)) continue;
     if (key == Edit::Key::model &&
         !can_be(model, of, static_cast<BodyModel>(static_cast<int>(edit.value.x()))))
       return std::nullopt;

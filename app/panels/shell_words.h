@@ -121,6 +121,8 @@ inline constexpr Phrase k_export_too_early{"There is no instant yet that could b
 inline constexpr Phrase k_export_newest{"Only the newest branch is exported; another one is shown.",
                                         "書き出せるのは最新の枝だけです。別の枝が表示されています。"};
 inline constexpr Phrase k_exporting{"Exporting {0}", "{0} を書き出しています"};
+inline constexpr Phrase k_export_progress{"{0:.4g} of {1:.4g} {2}, {3:.3g}/s, {4:.0f} s left",
+                                          "{0:.4g}/{1:.4g}、毎秒 {3:.3g}、残り {4:.0f} 秒"};
 inline constexpr Phrase k_exports{"exports at work: {0}, {1:.0f} %   ", "書き出し中: {0}件、{1:.0f} %   "};
 inline constexpr Phrase k_show_folder{"Open folder", "フォルダを開く"};
 inline constexpr Phrase k_no_folder_program{"No program that shows folders is installed: {0}",

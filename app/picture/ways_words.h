@@ -10,7 +10,7 @@ inline constexpr Phrase k_way_open{"{0}: way to {1} open, widest {2} m, shortest
                                    "{0}：{1}まで通れる（最も広い道の幅 {2} m、最短 {3} m）"};
 inline constexpr Phrase k_way_blocked{"{0}: no way to {1}, {2} m left, blocked by {3}",
                                       "{0}：{1}まで通れない（残り {2} m、塞ぐ家具：{3}）"};
-inline constexpr Phrase k_way_caught{"{0}: cannot leave, {1} is where they are",
+inline constexpr Phrase k_way_caught{"{0}: cannot leave, blocked where they are by {1}",
                                      "{0}：{1}が居場所にかかり、動けない"};
 inline constexpr Phrase k_way_narrow{"{0}: {1} is narrower than a person", "{0}：{1}は人の幅より狭い"};
 inline constexpr Phrase k_way_no_door{"{0}: there is no door", "{0}：扉がない"};

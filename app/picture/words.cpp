@@ -54,6 +54,24 @@ Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, 
                             : Stance::standing;
 }
 
+/// How far the foot of a body went along the floor, m: what the middle of its base would have travelled, were
+/// the body set upright about what it leans on. Of one that began on another piece the travel along that.
+double slip(const Model& model, const io::FrameRow& row, std::size_t index) {
+  constexpr double k_off_the_floor = 0.05;  // m
+  const Body& body = model.bodies[index];
+  const io::BodyNumbers& now = row.body[index];
+  if (body.support_polygon.empty() || body.base_centre.z() > k_off_the_floor) return now.slide;
+  const auto place = [&](const Vec3& x) -> Vec3 {
+    return now.centre() + now.rotation() * (x - body.centre_of_gravity);
+  };
+  Vec3 foot = place(body.support_polygon.front());
+  for (const Vec3& corner : body.support_polygon)
+    if (const Vec3 x = place(corner); x.z() < foot.z()) foot = x;
+  const Quat upright = Quat::FromTwoVectors(now.rotation() * Vec3::UnitZ(), Vec3::UnitZ());
+  const Vec3 middle = foot + upright * (place(body.base_centre) - foot);
+  return (middle - body.base_centre).head<2>().norm();
+}
+
 /// Moves, and nothing touches or holds it.
 bool is_in_the_air(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t index) {
   const Body& body = model.bodies[index];
@@ -168,7 +186,7 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::standing:
       line += say(k_standing);
   }
-  if (now.slide > k_slid_least) line += say(k_slid, 1e3 * now.slide);
+  if (const double slid = slip(model, row, body); slid > k_slid_least) line += say(k_slid, 1e3 * slid);
   return line;
 }
 
@@ -186,9 +204,9 @@ std::vector<std::string> bodies_in_words(const Model& model, const Vec3& gravity
   std::vector<std::string> lines;
   for (std::size_t i = 0; i < told; ++i) lines.push_back(body_in_words(model, gravity, row, bodies[i]));
   if (told == 0 && !bodies.empty()) {
-    const std::size_t farthest =
-        *ranges::max_element(bodies, {}, [&](std::size_t body) { return row.body[body].slide; });
-    const double slide = row.body[farthest].slide;
+    const auto slid = [&](std::size_t body) { return slip(model, row, body); };
+    const std::size_t farthest = *ranges::max_element(bodies, {}, slid);
+    const double slide = slid(farthest);
     lines.push_back(
         say(k_all_stand, bodies.size()) +
         (slide > k_slid_least ? say(k_slid_farthest, model.bodies[farthest].name, 1e3 * slide) : ""));

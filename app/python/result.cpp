@@ -17,6 +17,7 @@
 #include "app/python/signals.h"
 #include "app/support/errors.h"
 #include "app/support/terms.h"
+#include "solver/io/export/exported_values.h"
 #include "solver/io/recording/rerun.h"
 
 namespace topple::python {
@@ -140,7 +141,7 @@ std::shared_ptr<Result> open(const std::filesystem::path& path) {
     result->history = recording.history();
     io::check_edits(result->history, result->scene->setup);
     const std::int32_t branch = recording.newest_branch();
-    const auto frames = recording.frames_on_way_to(branch);
+    const auto frames = io::exported_frames(recording, result->scene->setup);
     const auto rows = std::make_shared<Rows>(io::row_shape(result->scene->setup.model));
     rows->reserve(frames.size());
     for (std::size_t k = 0; k < frames.size() && !signals.raised(); ++k) {

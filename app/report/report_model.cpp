@@ -66,8 +66,7 @@ std::string models(const ReportPage& page, const ordered_json& body) {
 
 std::string of_frames(const ReportPage& page) {
   const Parameters& p = page.report().scene->setup.parameters;
-  const std::string word = page.report().summary["integrator"],
-                    name = page.text(model_words::phrase_of_choice(word));
+  const std::string name = page.text(model_words::phrase_of_choice(traits(p.integrator).word));
   switch (p.integrator) {
     case Integrator::generalized_alpha:
       return fmt::format("{}, ρ∞ = {}", name, short_shown(p.spectral_radius));
@@ -79,8 +78,8 @@ std::string of_frames(const ReportPage& page) {
   return name;
 }
 
-/// What moved the bodies, whatever the scene asks of frames.
-std::string integrators(const ReportPage& page) {
+/// Of all bodies, floors and walls of beams included.
+std::set<ModelLevel> levels_of(const ReportPage& page) {
   const Model& model = page.report().scene->setup.model;
   std::set<ModelLevel> levels;
   if (model.furniture_total() < static_cast<int>(model.bodies.size())) levels.insert(ModelLevel::frame);
@@ -88,6 +87,18 @@ std::string integrators(const ReportPage& page) {
     levels.insert(level_of(body["model"]).kind);
     for (const ordered_json& change : body["models"]) levels.insert(level_of(change["model"]).kind);
   }
+  return levels;
+}
+
+/// Contacts have springs, of which planar blocks know nothing.
+bool has_springs(const ReportPage& page) {
+  return std::ranges::any_of(levels_of(page), [](ModelLevel level) { return !traits(level).has_block; });
+}
+
+/// What moved the bodies, whatever the scene asks of frames.
+std::string integrators(const ReportPage& page) {
+  const Model& model = page.report().scene->setup.model;
+  const std::set<ModelLevel> levels = levels_of(page);
   std::string out;
   for (const ModelLevel level : levels) {
     const Phrase* const own =
@@ -121,7 +132,7 @@ std::string assumptions_section(ReportPage& page) {
   if (!model.planes.empty()) list.push_back(page.say(words::k_rigid_floor));
   if (model.furniture_total() < static_cast<int>(model.bodies.size()))
     list.push_back(page.say(words::k_beam_floor));
-  list.push_back(page.say(words::k_friction, frictions(setup)));
+  list.push_back(page.say(has_springs(page) ? words::k_friction : words::k_rigid_friction, frictions(setup)));
   if (some([](const Material& m) { return m.yield > 0; }))
     list.push_back(
         page.say(words::k_frames_plastic, some([](const Material& m) { return m.fracture_strain > 0; })
@@ -147,14 +158,19 @@ std::string settings_section(ReportPage& page) {
       {page.say(words::k_simulated),
        report.summary["status"] == "stopped" ? page.say(words::k_stopped, simulated) : simulated + " s"},
       {page.say(words::k_integrator), integrators(page)},
-      {page.say(words::k_step), step(page)},
-      {page.say(words::k_contact), traits(p.contact).word},
-      {page.say(words::k_alpha),
-       fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))},
-      {page.say(words::k_member_share), short_shown(p.contact.member_share)},
-      {page.say(words::k_q), short_shown(p.contact.q)},
-      {page.say(words::k_mu), frictions(page.report().scene->setup)}};
-  if (traits(p.contact).has_restitution) {
+      {page.say(words::k_step), step(page)}};
+  const bool springs = has_springs(page);
+  const std::string law(traits(p.contact).word);
+  rows.push_back({page.say(words::k_contact), springs ? law : page.say(words::k_no_springs, law)});
+  if (springs) {
+    rows.push_back(
+        {page.say(words::k_alpha),
+         fmt::format("{} kgf ({} N)", plain(p.contact.alpha / k_standard_gravity), plain(p.contact.alpha))});
+    rows.push_back({page.say(words::k_member_share), short_shown(p.contact.member_share)});
+    rows.push_back({page.say(words::k_q), short_shown(p.contact.q)});
+  }
+  rows.push_back({page.say(words::k_mu), frictions(setup)});
+  if (springs && traits(p.contact).has_restitution) {
     rows.push_back({page.say(words::k_restitution), short_shown(p.contact.restitution)});
     rows.push_back({page.say(words::k_normal_speed), short_shown(p.contact.normal_speed) + " m/s"});
   }

@@ -261,7 +261,7 @@ std::string table(const ReportPage& page, const ordered_json& ways) {
     rows.push_back({escaped(way["place"].get<std::string>()),
                     !any ? "\u2013" : page.say(way["open"].get<bool>() ? words::k_open_way : words::k_no_way),
                     any ? escaped(way["door"].get<std::string>()) : "\u2013",
-                    with_error(way["before"]["widest_m"], nullptr, 1, 2),
+                    with_error(way["before"]["widest_m"], nullptr, 1, 3),
                     with_error(way["widest_m"], nullptr, 1, 3), with_error(way["length_m"], nullptr, 1, 1),
                     any ? listed(way["blocked_by"]) : "\u2013", hits.empty() ? "\u2013" : hits});
   }

@@ -41,7 +41,7 @@ inline constexpr Phrase k_nothing_falls_far{"Nothing overturns. “{0}” tilts 
 inline constexpr Phrase k_is_hit{"“{0}” is hit by “{1}” after {2} s.", "「{0}」に{2}秒で「{1}」が当たる。"};
 inline constexpr Phrase k_is_shut_in{"“{0}” has no way out any more: {1}.",
                                      "「{0}」から扉まで通れなくなる（{1}）。"};
-inline constexpr Phrase k_is_caught{"“{0}” cannot leave: {1} has come to where they are.",
+inline constexpr Phrase k_is_caught{"“{0}” cannot leave: blocked where they are by {1}.",
                                     "「{0}」の居場所に{1}がかかり、動けない。"};
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};
@@ -373,6 +373,11 @@ inline constexpr Phrase k_beam_floor{
     "Floor or walls of beams bend; their ends move with the building, on which the furniture does not act "
     "back.",
     "梁でモデル化した床・壁は変形する。その端部は建物とともに動き、家具から建物への影響は考慮しない。"};
+inline constexpr Phrase k_rigid_friction{
+    "Contact is rigid: a landing leaves the angular rate that angular momentum about the new edge gives "
+    "(Housner), times the restitution of the piece; one coefficient of friction holds at all speeds, {0}.",
+    "接触は剛とする。着地後の角速度は新しい辺まわりの角運動量（Housner）から求めた値に家具の反発係数を乗じ、"
+    "摩擦係数は速度によらず一定（{0}）とする。"};
 inline constexpr Phrase k_friction{
     "Contact is a spring against penetration with one coefficient of friction at all speeds, {0}.",
     "接触は貫入に抵抗するばねで表し、摩擦係数は速度によらず一定（{0}）とする。"};
@@ -401,6 +406,8 @@ inline constexpr Phrase k_step{"time step", "時間刻み"};
 inline constexpr Phrase k_steps{"{0} steps, {1} rejected", "{0}ステップ、棄却{1}"};
 inline constexpr Phrase k_adaptive{"adaptive, tolerance {0}, mean {1} ms", "可変、許容誤差 {0}、平均 {1} ms"};
 inline constexpr Phrase k_contact{"contact law", "接触則"};
+inline constexpr Phrase k_no_springs{"{0}, rigid: a planar block has no springs",
+                                     "{0}（剛。面内ブロックにはばねがない）"};
 inline constexpr Phrase k_alpha{"penalty coefficient α", "ペナルティ係数 α"};
 inline constexpr Phrase k_member_share{"share of α between members", "部材間での α の割合"};
 inline constexpr Phrase k_q{"penalty index q", "ペナルティ指数 q"};

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <utility>
 
+#include "app/panels/shell_words.h"
 #include "app/support/errors.h"
 #include "app/support/progress.h"
 
@@ -82,7 +83,8 @@ void ExportJob::read_reports() {
     const std::optional<ProgressReport> report = progress_in(unread_.substr(0, end));
     if (!report || !(report->total > 0)) continue;
     part_ = std::clamp(report->done / report->total, 0., 1.);
-    line_ = in_words(*report);
+    line_ = say(window_words::k_export_progress, report->done, report->total, report->unit, report->rate,
+                report->left);
   }
 }
 

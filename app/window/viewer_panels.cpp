@@ -81,11 +81,9 @@ void Viewer::draw_words(const io::FrameRow& row) {
   }
   const float inner = right - legend;
   render::LeftOut left_out;
-  const bool drawn = render::draw_legend_in(list, fonts_, frame_.legend,
-                                            render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
-                                            {"", inner, scene_.top + margin, right - margin, bottom - margin},
-                                            frame_.dark, left_out)
-                         .has_value();
+  const std::optional<render::OverlayBox> drawn = render::draw_legend_in(
+      list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
+      {"", inner, scene_.top + margin, right - margin, bottom - margin}, frame_.dark, left_out);
   std::optional<render::OverlayBox> flat;
   if (!drawn)
     flat = render::draw_flat_legend_in(
@@ -93,8 +91,10 @@ void Viewer::draw_words(const io::FrameRow& row) {
         {"", scene_.left + margin, y + pad, right - margin, bottom - pad}, frame_.dark);
   words_bottom_ = flat ? bottom - flat->top + pad : 0;
   words_right_ = drawn ? right - inner : 0;
+  std::vector<render::OverlayBox> taken{{"words", scene_.left, scene_.top, words_left_ + scene_.left, y}};
+  if (drawn) taken.push_back(*drawn);
   render::draw_labels(list, fonts_, frame_, orbit_.camera(aspect()),
-                      {"", scene_.left, scene_.top, right, bottom}, flat ? flat->top - pad : bottom);
+                      {"", scene_.left, scene_.top, right, bottom}, flat ? flat->top - pad : bottom, taken);
   list.PopClipRect();
 }
 

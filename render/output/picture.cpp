@@ -70,12 +70,12 @@ struct Picture::Parts {
   void draw_words(const SceneFrame& frame, const Camera& camera, ColourMap map) {
     words.with([&] {
       ImGui::NewFrame();
+      boxes = draw_overlay(*ImGui::GetBackgroundDrawList(), fonts, frame, map, static_cast<float>(width),
+                           static_cast<float>(height), left_out);
       if (finite(camera))
         draw_labels(*ImGui::GetBackgroundDrawList(), fonts, frame, camera,
                     {"", 0, 0, static_cast<float>(width), static_cast<float>(height)},
-                    static_cast<float>(height));
-      boxes = draw_overlay(*ImGui::GetBackgroundDrawList(), fonts, frame, map, static_cast<float>(width),
-                           static_cast<float>(height), left_out);
+                    static_cast<float>(height), boxes);
       ImGui::Render();
       painter.draw(*ImGui::GetDrawData(), canvas.target());
     });

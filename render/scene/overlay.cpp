@@ -206,10 +206,10 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
 }
 
 void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
-                 const OverlayBox& room, float lowest) {
+                 const OverlayBox& room, float lowest, std::span<const OverlayBox> taken) {
   const float unit = fonts.text->FontSize / 17, pad = 3 * unit, away = 9 * unit;
   const ImFont& font = *fonts.small;
-  std::vector<OverlayBox> placed;
+  std::vector<OverlayBox> placed(taken.begin(), taken.end());
   for (const Label& label : frame.labels) {
     const auto at = seen_at(camera, label.at, room.right - room.left, room.bottom - room.top);
     if (!at || label.words.empty()) continue;
@@ -218,10 +218,12 @@ void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& 
     OverlayBox box{"label", room.left + at->x + away, room.top + at->y - height / 2, 0, 0};
     box.left = std::round(std::clamp(box.left, room.left, room.right - width));
     box.top = std::round(std::clamp(box.top, room.top, lowest - height));
-    for (const OverlayBox& other : placed)  // below those before it
-      if (box.left < other.right && box.left + width > other.left && box.top < other.bottom &&
-          box.top + height > other.top)
-        box.top = other.bottom + 1;
+    const auto overlaps = [&](const OverlayBox& other) {
+      return box.left < other.right && box.left + width > other.left && box.top < other.bottom &&
+             box.top + height > other.top;
+    };
+    for (auto other = placed.begin(); other != placed.end();)  // below those before it
+      if ((other = std::ranges::find_if(placed, overlaps)) != placed.end()) box.top = other->bottom + 1;
     box.right = box.left + width;
     box.bottom = box.top + height;
     if (box.bottom > lowest) continue;

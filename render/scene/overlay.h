@@ -1,6 +1,7 @@
 // Words, legend and trace of a picture.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "render/scene/camera.h"
@@ -21,9 +22,9 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
                                      ColourMap map, float width, float height, LeftOut& left_out);
 
 /// Adds the frame's labels beside their places, as `camera` sees them in a picture that fills `room` (px; its
-/// name does not count). They stay above `lowest` and inside, and do not overlap; those without room are left
-/// out.
+/// name does not count). They stay above `lowest` and inside, and overlap neither each other nor `taken`;
+/// those without room are left out.
 void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
-                 const OverlayBox& room, float lowest);
+                 const OverlayBox& room, float lowest, std::span<const OverlayBox> taken);
 
 }  // namespace topple::render

@@ -41,8 +41,10 @@ const Eigen::AlignedBox3d& Approach::box(const Model& model, const State& state,
 
 // Of motions_ from `state`.
 double Approach::greatest(const Model& model, const State& state, double margin) {
-  for (Motion& motion : motions_)
-    motion.radius = motion.rigid.reach + motion.half_width + motion.rigid.way() + motion.more;
+  for (Motion& motion : motions_) {
+    motion.way = motion.rigid.way();
+    motion.radius = motion.rigid.reach + motion.half_width + motion.way + motion.more;
+  }
   // they are almost in order since the last time
   for (std::size_t k = 1; k < order_.size(); ++k)
     for (std::size_t j = k; j > 0 && motions_[order_[j]].first() < motions_[order_[j - 1]].first(); --j)
@@ -54,10 +56,13 @@ double Approach::greatest(const Model& model, const State& state, double margin)
     for (auto other = one + 1; other != order_.end() && motions_[*other].first() <= last; ++other) {
       const Motion& b = motions_[*other];
       if ((a.rigid.centre - b.rigid.centre).norm() > a.radius + b.radius + margin) continue;
+      // cheap bounds first
+      const double most = a.way + b.way + a.more + b.more, near = margin + a.half_width + b.half_width;
+      if (!(most > greatest)) continue;
+      const double apart = box(model, state, *one).exteriorDistance(box(model, state, *other));
+      if (apart > near + most) continue;
       const double closer = approach(a.rigid, b.rigid) + a.more + b.more;
-      if (closer > greatest && box(model, state, *one).exteriorDistance(box(model, state, *other)) <=
-                                   margin + a.half_width + b.half_width + closer)
-        greatest = closer;
+      if (closer > greatest && apart <= near + closer) greatest = closer;
     }
   }
   return greatest;

@@ -26,7 +26,8 @@ class Approach {
   struct Motion {
     RigidMotion rigid;
     double half_width;             // m
-    double more = 0, radius = 0;   // m; of a sphere in which its surfaces stay
+    double more = 0;               // m
+    double way = 0, radius = 0;    // m; of `rigid`, and of a sphere in which its surfaces stay
     Eigen::AlignedBox3d box = {};  // of its nodes at the start, when it is asked for
 
     double first() const { return rigid.centre.x() - radius; }

@@ -36,8 +36,6 @@ class FramePart final : public Part {
   void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                    Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
-  void take_sticks(const State& state) override { system_.take_sticks(state); }
-  void give_sticks(State& state) override { system_.give_sticks(state); }
 
  private:
   void find_contacts(const StepInputs& now, const State& state);

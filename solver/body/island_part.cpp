@@ -75,7 +75,7 @@ StepStatus IslandPart::settle(const Parameters& parameters, State& state, PartSc
   find_member_contacts(law_at_rest(parameters.contact), coupling_.pairs(), coupling_.position(),
                        coupling_.velocity(), coupling_.position(), found_);
   now_ = &found_;
-  sticks_.store(found_.touches, coupling_.pairs(), state);
+  sticks_.store(found_.touches, coupling_.pairs());
   return status;
 }
 
@@ -255,7 +255,7 @@ void IslandPart::advance_by_substeps(const StepSpan& span, State& next, PartScra
     begin_again(next);
     place(next);
   }
-  sticks_.store(found_.touches, coupling_.pairs(), next);
+  sticks_.store(found_.touches, coupling_.pairs());
 }
 
 double IslandPart::time_limit(const Parameters& parameters, const State& state) {

@@ -34,8 +34,7 @@ class IslandPart final : public ReducedPart {
   void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                    Forces& forces) override;
   HardestContact hardest_contact(const HardestContact& hardest) override;
-  void take_sticks(const State& state) override { sticks_.take(state); }
-  void give_sticks(State& state) override { sticks_.give(coupling_.pairs(), state); }
+  MemberSticks& sticks() { return sticks_; }
 
  private:
   // Of a step, to take it again.

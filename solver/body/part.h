@@ -40,7 +40,7 @@ struct Forces {
 };
 
 /// Parts of one model share no body: each changes only its own bodies' entries of a State, but for the stick
-/// springs between members, which are one list (take_sticks).
+/// springs between members, which are one list (member_sticks.h).
 class Part {
  public:
   virtual ~Part() = default;
@@ -69,10 +69,6 @@ class Part {
                            Forces& forces) = 0;
   /// Of those that list_forces found last, or `hardest` where none of its own is greater.
   virtual HardestContact hardest_contact(const HardestContact& hardest) = 0;
-  /// Until give_sticks it works on a copy of the stick springs between members, so that parts can advance in
-  /// parallel; then those of its own pairs go back.
-  virtual void take_sticks(const State&) {}
-  virtual void give_sticks(State&) {}
 };
 
 }  // namespace topple

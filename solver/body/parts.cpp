@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "solver/body/frame_part.h"
-#include "solver/body/island_part.h"
 #include "solver/body/planar_part.h"
 #include "solver/body/reduced_part.h"
 #include "solver/body/step_control.h"
@@ -97,6 +96,7 @@ void Parts::arrange(const State& state) {
                                                 state.bodies, sections)};
   };
   with_frames_.assign(levels_.size(), false);
+  sticks_of_.assign(levels_.size(), nullptr);
   for (const Island& island : islands)
     for (const Island& part : without_mixed(island)) {
       const int b = part.bodies.front();
@@ -107,6 +107,7 @@ void Parts::arrange(const State& state) {
           if (!traits(levels_[own]).moves_nodes) rigid.push_back(own);
         }
         systems.push_back(islands_.system(part, rigid));
+        for (const int own : part.bodies) sticks_of_[own] = &systems.back()->sticks();
       } else if (part.is_alone() && traits(levels_[b]).has_block) {
         blocks.push_back({b, &planar(b)});
         if (blocks.size() == k_bodies_per_part) close_part();
@@ -115,6 +116,7 @@ void Parts::arrange(const State& state) {
         if (some.size() == k_bodies_per_part) close_part();
       } else {
         coupled.push_back(couple(part));
+        for (const int own : part.bodies) sticks_of_[own] = &coupled.back().part->sticks();
       }
     }
   close_part();

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/body/island_part.h"
 #include "solver/body/islands.h"
 #include "solver/body/part.h"
 #include "solver/body/planar_body.h"
@@ -28,6 +29,13 @@ class Parts {
   /// first, then those that are not, then frames with the rigid bodies near them.
   void arrange(const State& state);
   const std::vector<std::shared_ptr<Part>>& all() const { return parts_; }
+  /// f() while each part has its own stick springs between members. Around what changes them.
+  template <class F>
+  void with_sticks(State& state, F f) {
+    take_sticks(model_, sticks_of_, state);
+    f();
+    give_sticks(model_, sticks_of_, state);
+  }
   /// Per body: its steps are those of frames.
   const std::vector<char>& with_frames() const { return with_frames_; }
   /// Whether a step moves nodes: there are frames.
@@ -79,9 +87,10 @@ class Parts {
   struct Coupled {
     Island island;
     std::vector<ModelLevel> levels;
-    std::shared_ptr<Part> part;
+    std::shared_ptr<IslandPart> part;
   };
   std::vector<Coupled> coupled_;
+  std::vector<MemberSticks*> sticks_of_;  // per body: of its part; null: it has no pairs
   bool moves_nodes_ = false;
   const std::vector<char> all_bodies_;
 };

@@ -344,14 +344,6 @@ void BodySystem::load_sticks(const State& state) {
   sticks_.load(state, member_pairs_);
 }
 
-void BodySystem::take_sticks(const State& state) {
-  sticks_.take(state);
-}
-
-void BodySystem::give_sticks(State& state) {
-  sticks_.give(member_pairs_, state);
-}
-
 void BodySystem::store_stick(const Contacts& now, State& state) {
   const std::size_t planes = model.planes.size();
   for (const int b : bodies) {
@@ -360,7 +352,7 @@ void BodySystem::store_stick(const Contacts& now, State& state) {
                 Vec3::Zero());
   }
   for (const TouchingPair& pair : now.planes) state.stick[pair.point * planes + pair.plane] = pair.out.stick;
-  if (!candidate_pairs.empty()) sticks_.store(now.members.touches, member_pairs_, state);
+  if (!candidate_pairs.empty()) sticks_.store(now.members.touches, member_pairs_);
 }
 
 int BodySystem::element_at(int global) const {

@@ -139,9 +139,7 @@ class BodySystem {
   void load_memory(const State& state, const BodyMotion& motion);
   /// The same for sticks between members alone.
   void load_sticks(const State& state);
-  /// Around advancing in parallel (MemberSticks).
-  void take_sticks(const State& state);
-  void give_sticks(State& state);
+  MemberSticks& sticks() { return sticks_; }
   /// Writes the stick springs of `contacts`; those of open contacts become zero.
   void store_stick(const Contacts& contacts, State& state);
   /// The law between a node of the system and planes.

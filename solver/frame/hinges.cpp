@@ -108,6 +108,11 @@ void hold_joints(BodySystem& s, const BodyMotion& start, const BodyMotion& trial
   }
 }
 
+void hold_ends(BodySystem& s) {
+  for (ElementState& state : s.elements)
+    if (state.hinge != Hinge::broken) state.held = 3;
+}
+
 bool release_joints(BodySystem& s, const BodyMotion& trial) {
   if (!s.remembers) return false;
   double reach = s.size;

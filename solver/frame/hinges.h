@@ -27,6 +27,9 @@ bool break_sections(BodySystem& system, const BodyMotion& trial);
 /// was released all of them flow.
 void hold_joints(BodySystem& system, const BodyMotion& start, const BodyMotion& trial);
 bool release_joints(BodySystem& system, const BodyMotion& trial);
+/// Statics alone: holds every end that is not broken. When a section breaks most of what flows unloads, and
+/// with all of that flowing on what is left is a mechanism.
+void hold_ends(BodySystem& system);
 
 /// Takes the flow of the accepted solution into system.elements and `state`; hinges are where it flowed, and
 /// go when loaded k_unloading below yield. Returns the energy that flow and fracture took, J, by the

@@ -1,5 +1,8 @@
 #include "solver/frame/integrator.h"
 
+#include <cmath>
+#include <limits>
+
 #include "solver/frame/central_difference.h"
 
 namespace topple {
@@ -30,6 +33,14 @@ constexpr IntegratorTraits k_integrators[] = {
 
 std::span<const IntegratorTraits> integrators() {
   return k_integrators;
+}
+
+double stable_share(const Parameters& parameters) {
+  const IntegratorTraits& method = traits(parameters.integrator);
+  if (method.is_explicit) return 1;
+  const GeneralizedAlpha c = method.coefficients(parameters);
+  const double lacks = c.gamma / 2 - c.beta;
+  return lacks > 0 ? 0.5 / std::sqrt(lacks) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace topple

@@ -24,5 +24,8 @@ std::span<const IntegratorTraits> integrators();
 inline const IntegratorTraits& traits(Integrator integrator) {
   return row_of(integrators(), integrator);
 }
+/// Greatest stable step over that of central differences (explicit_limit), by linear theory:
+/// 1/sqrt(gamma/2 - beta)/2 of Newmark's method where that is real (Hughes 1987, 9.1.2), else infinite.
+double stable_share(const Parameters& parameters);
 
 }  // namespace topple

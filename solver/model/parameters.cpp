@@ -47,8 +47,8 @@ Vec3 pull_force(const Pull& pull, double t) {
 
 bool is_finite(const Parameters& parameters) {
   const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors, pulls, want_stress,
-               accuracy, gravity, integrator, spectral_radius, beta, gamma, time_step, adaptive, tolerance,
-               substep_refinement, resolves_contacts] = parameters;
+               accuracy, gravity, integrator, automatic, spectral_radius, beta, gamma, time_step, adaptive,
+               tolerance, substep_refinement, resolves_contacts] = parameters;
   double total = sum_of(contact) + sum_of(contact_before) + sum_of(contact_ramp) + sum_of(gravity) +
                  sum(accuracy, spectral_radius, beta, gamma, time_step, tolerance, substep_refinement);
   for (const Shake& shake : shakes) total += sum_of(shake);

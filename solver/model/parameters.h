@@ -110,6 +110,7 @@ struct Parameters {
   double accuracy = 0.01;         ///< error that `automatic` allows, see model_level.h
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
+  bool automatic_integrator = false;  ///< "auto": generalized_alpha as long as no other is chosen
   double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1
   double beta = 0.25, gamma = 0.5;  ///< of newmark
   double time_step = 1e-3;          ///< s, fixed step

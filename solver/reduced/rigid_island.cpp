@@ -551,7 +551,7 @@ void RigidIsland::finish(const StepSpan& span, State& next, MemberSticks& sticks
     touch.out.stick = touch.input.stick;
     now_.each_place(touch, [&](int pair, int place) { pairs[pair].stick[place] = touch.input.stick; });
   }
-  sticks.store(which_, found_, pairs, next);
+  sticks.store(which_, found_, pairs);
   law_ = span.end.law;
 }
 

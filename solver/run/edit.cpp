@@ -238,19 +238,22 @@ constexpr EditTraits k_edits[] = {
        p.anchors[edit.index] = edit.value.x() != 0;
      }},
     {K::integrator, Of::run, "integrator", true, always,
-     [](const Parameters& p, int) { return number_of(p.integrator); },
+     [](const Parameters& p, int) {
+       const bool automatic = p.automatic_integrator && p.integrator == Integrator::generalized_alpha;
+       return automatic ? number(k_automatic_integrator) : number_of(p.integrator);
+     },
      [](const Edit& edit, const Model&, double, Parameters& p) {
-       p.integrator = edit.value.x() == k_automatic_integrator ? Integrator::generalized_alpha
-                                                               : chosen<Integrator>(edit);
+       p.automatic_integrator = edit.value.x() == k_automatic_integrator;
+       p.integrator = p.automatic_integrator ? Integrator::generalized_alpha : chosen<Integrator>(edit);
      },
      true},
     {K::want, Of::run, "want", true, always, [](const Parameters& p, int) { return number(p.want_stress); },
      [](const Edit& edit, const Model&, double, Parameters& p) { p.want_stress = edit.value.x() != 0; }},
     {K::time_step, Of::run, "time_step", true, always,
-     [](const Parameters& p, int) { return number(p.time_step); },
+     [](const Parameters& p, int) { return number(p.adaptive ? 0 : p.time_step); },
      [](const Edit& edit, const Model&, double, Parameters& p) {
-       p.time_step = edit.value.x();
-       p.adaptive = false;
+       p.adaptive = edit.value.x() == 0;
+       if (!p.adaptive) p.time_step = edit.value.x();
      },
      true},
     {K::pull, Of::node, "pull", true, [](const Model&, const Parameters&, int) { return false; }, pull_on,

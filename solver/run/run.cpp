@@ -5,6 +5,7 @@
 
 #include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
+#include "solver/frame/integrator.h"
 #include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
 #include "solver/model/excitation.h"
@@ -131,6 +132,12 @@ bool Run::over() const {
   if (setup_->run.analysis == Analysis::modes) return true;
   const double slack = now_.parameters.adaptive ? k_least_step : now_.parameters.time_step / 2;
   return !status_.ok() || now_.stopped_early || now_.state.time > setup_->run.duration - slack;
+}
+
+std::optional<double> Run::stable_step() {
+  const double share = stable_share(now_.parameters);
+  const std::optional<double> limit = explicit_limit(workspace_);
+  return limit && std::isfinite(share) ? std::optional(share * *limit) : std::nullopt;
 }
 
 void Run::find_acting(const State& state, Acting& acting) const {

@@ -142,8 +142,8 @@ class Run {
   Snapshot snapshot(double time) const;
   std::int64_t newton_iterations() const { return now_.newton_iterations; }
   std::int64_t rejected_steps() const { return now_.rejected_steps; }
-  /// Of central differences, once it has stepped, s.
-  std::optional<double> stable_step() { return explicit_limit(workspace_); }
+  /// Longest with which its integrator is stable, once it has stepped, s; none where all are.
+  std::optional<double> stable_step();
 
  private:
   void start();

@@ -2,59 +2,18 @@
 
 #include <algorithm>
 #include <bit>
-#include <functional>
-#include <iterator>
 #include <tuple>
 
-#include "solver/math/ranges.h"
+#include "solver/contact/proximity.h"
 
 namespace topple {
 namespace {
-
-bool is_same(const MemberStick& a, const MemberStick& b) {
-  return a.elements == b.elements && a.place == b.place;
-}
 
 bool in_order(const MemberStick& a, const MemberStick& b) {
   return std::tie(a.elements, a.place) < std::tie(b.elements, b.place);
 }
 
-// Mostly they are two that are in order one behind the other.
-void sort(std::vector<MemberStick>& sticks, std::vector<MemberStick>& merged) {
-  const auto second = std::is_sorted_until(sticks.begin(), sticks.end(), in_order);
-  if (second == sticks.end()) return;
-  if (!std::is_sorted(second, sticks.end(), in_order)) {
-    std::sort(sticks.begin(), sticks.end(), in_order);
-    return;
-  }
-  merged.clear();
-  std::merge(sticks.begin(), second, second, sticks.end(), std::back_inserter(merged), in_order);
-  sticks.swap(merged);
-}
-
-// Of sticks in order, whether they are of `pairs`.
-auto of_pairs(std::span<const MemberPair> pairs) {
-  return [pair = pairs.begin(), pairs](const MemberStick& stick) mutable {
-    const auto is_before = [&](const MemberPair& one) { return one.elements < stick.elements; };
-    if (pair != pairs.end() && is_before(*pair)) ++pair;  // mostly the next one has it, or none for long
-    if (pair != pairs.end() && is_before(*pair)) pair = std::partition_point(pair, pairs.end(), is_before);
-    return pair != pairs.end() && pair->elements == stick.elements;
-  };
-}
-
 }  // namespace
-
-// Those of `pairs` in `all` become new_. All are in order.
-void MemberSticks::replace(std::span<const MemberPair> pairs, std::vector<MemberStick>& all) {
-  if (std::equal(all.begin(), all.end(), new_.begin(), new_.end(), is_same)) {
-    all.swap(new_);
-    return;
-  }
-  auto own = of_pairs(pairs);
-  std::erase_if(all, std::ref(own));
-  all.insert(all.end(), new_.begin(), new_.end());
-  sort(all, merged_);
-}
 
 void MemberSticks::load(const State& state, std::span<MemberPair> pairs) const {
   const std::vector<MemberStick>& sticks = keeps_ ? own_ : state.member_sticks;
@@ -67,38 +26,66 @@ void MemberSticks::load(const State& state, std::span<MemberPair> pairs) const {
   }
 }
 
-void MemberSticks::store(std::span<const MemberTouch> touches, std::span<const MemberPair> pairs,
-                         State& state) {
-  new_.clear();
+void MemberSticks::store(std::span<const MemberTouch> touches, std::span<const MemberPair> pairs) {
+  own_.clear();
   for (const MemberTouch& touch : touches)
-    new_.push_back({pairs[touch.pair].elements, touch.place, touch.out.stick});
-  sort(new_, merged_);
-  replace(pairs, keeps_ ? own_ : state.member_sticks);
+    own_.push_back({pairs[touch.pair].elements, touch.place, touch.out.stick});
+  std::sort(own_.begin(), own_.end(), in_order);
 }
 
 void MemberSticks::store(std::span<const int> which, std::span<const std::uint8_t> places,
-                         std::span<const MemberPair> pairs, State& state) {
-  new_.clear();
+                         std::span<const MemberPair> pairs) {
+  own_.clear();
   for (const int p : which)
     for (unsigned left = places[p]; left != 0; left &= left - 1) {
       const int place = std::countr_zero(left);
       if (const Vec3& stick = pairs[p].stick[place]; !stick.isZero(0))
-        new_.push_back({pairs[p].elements, place, stick});
+        own_.push_back({pairs[p].elements, place, stick});
     }
-  replace(pairs, keeps_ ? own_ : state.member_sticks);
 }
 
-void MemberSticks::take(const State& state) {
-  own_ = state.member_sticks;
-  keeps_ = true;
+// The next ones, of elements before `end`.
+void MemberSticks::give(int end, std::vector<MemberStick>& all) {
+  const auto first = own_.begin() + static_cast<std::ptrdiff_t>(given_);
+  const auto last =
+      std::find_if(first, own_.end(), [&](const MemberStick& stick) { return stick.elements.a >= end; });
+  all.insert(all.end(), first, last);
+  given_ = static_cast<std::size_t>(last - own_.begin());
 }
 
-void MemberSticks::give(std::span<const MemberPair> pairs, State& state) {
-  keeps_ = false;
-  new_.clear();
-  auto own = of_pairs(pairs);
-  ranges::copy_if(own_, std::back_inserter(new_), std::ref(own));
-  replace(pairs, state.member_sticks);
+void take_sticks(const Model& model, std::span<MemberSticks* const> of_body, const State& state) {
+  for (MemberSticks* const holder : of_body) {
+    if (!holder) continue;
+    holder->own_.clear();
+    holder->keeps_ = true;
+  }
+  for (const MemberStick& stick : state.member_sticks)
+    for (const int part : {stick.elements.a, stick.elements.b})
+      if (MemberSticks* const holder = of_body[body_of(model, part)]) {
+        holder->own_.push_back(stick);
+        break;
+      }
+}
+
+void give_sticks(const Model& model, std::span<MemberSticks* const> of_body, State& state) {
+  for (MemberSticks* const holder : of_body) {
+    if (!holder) continue;
+    holder->given_ = 0;
+    holder->keeps_ = false;
+  }
+  std::vector<MemberStick>& all = state.member_sticks;
+  all.clear();
+  for (std::size_t b = 0; b < of_body.size(); ++b) {
+    const int end = model.bodies[b].first_element + model.bodies[b].element_count;
+    if (of_body[b]) {
+      of_body[b]->give(end, all);
+      continue;
+    }
+    const auto first = static_cast<std::ptrdiff_t>(all.size());
+    for (MemberSticks* const holder : of_body)
+      if (holder) holder->give(end, all);
+    std::sort(all.begin() + first, all.end(), in_order);
+  }
 }
 
 }  // namespace topple

@@ -1,5 +1,7 @@
 #include "solver/state/sections.h"
 
+#include <algorithm>
+
 #include "solver/element/plasticity.h"
 
 namespace topple {
@@ -17,8 +19,14 @@ void section_forces(const Model& model, const State& state, int index, std::vect
 
 void section_forces(const Model& model, const State& state, std::vector<SectionForces>& forces) {
   forces.resize(model.elements.size());
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    section_forces(model, state, static_cast<int>(b), forces);
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
+    const Body& body = model.bodies[b];
+    if (traits(state.bodies[b].level).has_stresses)
+      section_forces(model, state, b, forces);
+    else
+      std::fill_n(forces.begin() + body.first_element, body.element_count,
+                  SectionForces{Vec3::Zero(), Vec3::Zero()});
+  }
 }
 
 }  // namespace topple

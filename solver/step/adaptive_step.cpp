@@ -32,12 +32,17 @@ double fit(double h, double left) {
 
 StepStatus adaptive_step(const Model& model, const Parameters& parameters, const State& state,
                          Workspace::Impl& w, double until, const TryStep& try_step) {
-  if (traits(parameters.integrator).is_explicit) w.find_explicit_limit(parameters, state);
-  const bool by_limit = w.explicit_limit.has_value();  // no frame, no limit: bodies bound their errors
+  const double share = stable_share(parameters);
+  if (std::isfinite(share)) w.find_explicit_limit(parameters, state);
+  // no frame, no limit: bodies bound their errors
+  const double longest =
+      w.explicit_limit && std::isfinite(share)
+          ? k_explicit_share * share * w.explicit_limit->step / parameters.substep_refinement
+          : k_longest_step;
+  const bool by_limit = w.explicit_limit.has_value() && traits(parameters.integrator).is_explicit;
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
-  h = by_limit ? k_explicit_share * w.explicit_limit->step / parameters.substep_refinement
-               : std::min(h, w.parts.time_limit(parameters, state));
+  h = by_limit ? longest : std::min({h, longest, w.parts.time_limit(parameters, state)});
   h = fit(h, left);
   StepStatus status;
   int iterations = 0, rejected = 0;
@@ -55,7 +60,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
       // as far as the energy of explicit substeps adds up; without frames there is none
       const double by_reach = std::isfinite(reach) ? std::min(next_size(h, error.energy, 0), reach) : reach;
       const double wanted =
-          std::min(std::max(next_size(h, error.greatest(), w.most_iterations), by_reach), k_longest_step);
+          std::min(std::max(next_size(h, error.greatest(), w.most_iterations), by_reach), longest);
       w.next.step_size = h;
       if (!by_limit) change_step(w.next, std::min(wanted, w.parts.time_limit(parameters, w.next)));
       break;

@@ -70,7 +70,10 @@ void state_between(const Model& model, const State& start, const State& end, dou
   const double h = end.time - start.time, t = (time - start.time) / h;
   const Hermite hermite(h, t);
   const auto mix = [&](const auto& a, auto& b) { b = (1 - t) * a + t * b; };
-  at = end;
+  const auto moves_nodes = [](const BodyState& body) { return traits(body.level).moves_nodes; };
+  copy(end, at,
+       at.position.size() != end.position.size() || ranges::any_of(start.bodies, moves_nodes) ||
+           ranges::any_of(end.bodies, moves_nodes));
   State placed;
   const State* from = &start;
   if (!ranges::equal(start.bodies, end.bodies, {}, &BodyState::level, &BodyState::level)) {

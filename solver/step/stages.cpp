@@ -24,16 +24,6 @@ void balance_changed(const StepInProgress& s) {
   s.w.parts.balance(s.parameters, s.start, s.w.changed, s.w.next);
 }
 
-// Greatest stable step over that of central differences, by linear theory: 1/sqrt(gamma/2 - beta)/2 of
-// Newmark's method where that is real (Hughes 1987, 9.1.2).
-double stable_share(const Parameters& parameters) {
-  const IntegratorTraits& method = traits(parameters.integrator);
-  if (method.is_explicit) return 1;
-  const GeneralizedAlpha c = method.coefficients(parameters);
-  const double lacks = c.gamma / 2 - c.beta;
-  return lacks > 0 && !parameters.adaptive ? 0.5 / std::sqrt(lacks) : std::numeric_limits<double>::infinity();
-}
-
 // Another law took hold: what contacts hold more with it is input.
 void change_law(const StepInProgress& s) {
   State& next = s.w.next;
@@ -116,13 +106,12 @@ StepStatus advance_parts(StepInProgress& s) {
     w.outcomes[part] = {};
     parts[part]->advance(span, w.next, scratch, w.outcomes[part]);
   };
-  if (w.parallel.run && count > 1 && !w.profile.clock) {
-    for (const auto& part : parts) part->take_sticks(w.next);
-    w.parallel.run(count, std::ref(advance));
-    for (const auto& part : parts) part->give_sticks(w.next);
-  } else {
-    for (int part = 0; part < count; ++part) advance(part, 0);
-  }
+  w.parts.with_sticks(w.next, [&] {
+    if (w.parallel.run && count > 1 && !w.profile.clock)
+      w.parallel.run(count, std::ref(advance));
+    else
+      for (int part = 0; part < count; ++part) advance(part, 0);
+  });
 
   StepStatus status;
   int iterations = 0, rejected = 0;

@@ -26,10 +26,10 @@ StepStatus settle(const Model& model, const Parameters& parameters, State& state
   if (!status.ok()) return status;
   Workspace::Impl& w = workspace.impl();
   start_models(model, parameters, state, w);
-  for (const auto& part : w.parts.all()) {
-    status = part->settle(parameters, state, w.scratches[0]);
-    if (!status.ok()) return status;
-  }
+  w.parts.with_sticks(state, [&] {
+    for (const auto& part : w.parts.all())
+      if (status.ok()) status = part->settle(parameters, state, w.scratches[0]);
+  });
   return status;
 }
 

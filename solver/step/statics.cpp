@@ -318,7 +318,9 @@ StepStatus LoadPath::balance_body(BodySystem& s, const Parameters& still, const 
       partial = whole ? 0 : partial + 1;
     }
     if (!found) continue;
-    if (release_joints(s, trial) || break_sections(s, trial)) {
+    const bool flows = release_joints(s, trial), breaks = !flows && break_sections(s, trial);
+    if (breaks) hold_ends(s);
+    if (flows || breaks) {
       iteration = partial = 0;
       last = k_none;
       released = true;

@@ -79,7 +79,7 @@ function drawTimeline() {
     path(page.curves.bodies[b], y);
   });
   brush.setLineDash([]);
-  const peak = Math.max(...page.curves.floor.map(Math.abs), 1e-9);
+  const peak = Math.max(page.curves.floor_peak, 1e-9);
   const middle = (split + height) / 2 + 0.4 * letter, reach = (height - split) / 2 - 0.6 * letter;
   brush.lineWidth = scale;
   brush.strokeStyle = soft;

@@ -176,22 +176,23 @@ Json map_json(int body, double ms) {
           {"here", {e.map->shake().frequency, e.map->shake().amplitude / k_gal}}};
 }
 
-/// Of each body its tilt as share of its critical angle; of the floor its acceleration, gal.
+/// Of each body its tilt as share of its critical angle; of the floor its acceleration and its peak, gal.
 Json curves(const std::vector<io::FrameRow>& rows, const io::Scene& scene) {
   Json times = Json::array(), floor = Json::array(), bodies = Json::array();
   const std::vector<Shake>& shakes = scene.setup.parameters.shakes;
   for (int b = 0; b < scene.setup.model.furniture_total(); ++b) bodies.push_back(Json::array());
   for (const io::FrameRow& row : rows) {
     times.push_back(number(row.time));
-    floor.push_back(shakes.empty()
-                        ? Json(0)
-                        : number(Vec3(row.floor_acceleration).dot(shakes.front().direction) / k_gal));
+    floor.push_back(number(floor_along(row, shakes) / k_gal));
     for (std::size_t b = 0; b < bodies.size(); ++b) {
       const io::BodyNumbers& body = row.body[b];
       bodies[b].push_back(body.critical_angle > 0 ? number(body.tilt / body.critical_angle) : Json(nullptr));
     }
   }
-  return {{"times", times}, {"floor", floor}, {"bodies", bodies}};
+  return {{"times", times},
+          {"floor", floor},
+          {"floor_peak", floor_peak(rows, shakes) / k_gal},
+          {"bodies", bodies}};
 }
 
 }  // namespace

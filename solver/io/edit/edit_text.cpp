@@ -35,6 +35,11 @@ std::string exact_text(const Key& key, double si) {
   return every_digit(si);
 }
 
+/// Whether 0 stands for the word that a key takes in place of a number: time_step = "auto".
+bool is_word(const Key& key, double number) {
+  return key.type == KeyType::number && !key.choices.empty() && number == 0;
+}
+
 std::string list_text(const std::vector<std::string>& items) {
   std::string text;
   for (const std::string& item : items) text += (text.empty() ? "[" : ", ") + item;
@@ -182,6 +187,7 @@ std::string edit_value_text(const Edit& edit, EditSpelling spelling) {
   };
   if (key.type == KeyType::boolean) return number != 0 ? "true" : "false";
   if (key.type == KeyType::choice) return spelt(*choice_of(key, number));
+  if (is_word(key, number)) return spelt(key.choices.front());
   std::vector<std::string> items;
   if (key.type == KeyType::choices) {
     for (std::size_t k = 0; k < (number != 0 ? key.choices.size() : 1); ++k)
@@ -197,6 +203,7 @@ std::string edit_value_text(const Edit& edit, EditSpelling spelling) {
 
 void check_edit_value(const Edit& edit) {
   const Key& key = key_of(edit.key);
+  if (is_word(key, edit.value.x())) return;
   for (int i = 0; i < least_count(key); ++i) {
     const double value = edit.value[i];
     if (!std::isfinite(value)) fail(edit, short_number(value) + " is not a finite number");

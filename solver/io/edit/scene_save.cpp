@@ -58,9 +58,7 @@ class Rewriting {
     std::vector<std::pair<Edit::Key, int>> keys;
     for (const auto& [key, index] : editable(model_, now_)) {
       const bool retyped = is_of_shake(key) && kind(read, index) != kind(now_, index);
-      const bool step = key == Edit::Key::time_step && read.adaptive != now_.adaptive;
-      if (!retyped && !step && edited_value(read, key, index) == edited_value(now_, key, index)) continue;
-      if (key == Edit::Key::time_step && now_.adaptive && read.adaptive) continue;
+      if (!retyped && edited_value(read, key, index) == edited_value(now_, key, index)) continue;
       if (key == Edit::Key::integrator && !frames_only()) continue;
       if (key == Edit::Key::friction_static && read.contact.friction_static == 0 &&
           now_.contact.excess() == 0)
@@ -86,8 +84,7 @@ class Rewriting {
   }
 
   void change(const Edit& edit) {
-    std::string value = toml_of(edit);
-    if (edit.key == Edit::Key::time_step && now_.adaptive) value = "\"auto\"";
+    const std::string value = toml_of(edit);
     const Edit::Of of = traits(edit.key).of;
     if (of == Edit::Of::body) {
       const BodyEntry& entry = *ranges::find_if(entries_, [&](const BodyEntry& one) {

@@ -149,8 +149,9 @@ void floor_row(CsvFile& csv, const FrameRow& row) {
 
 }  // namespace
 
-bool write_csv(const Recording& recording, const Model& model, const host::Target& folder,
+bool write_csv(const Recording& recording, const Setup& setup, const host::Target& folder,
                const Proceed& proceed) {
+  const Model& model = setup.model;
   std::error_code error;
   fs::create_directories(folder.path, error);
   if (error) throw WriteError(folder.path.string() + ": cannot be created: " + error.message());
@@ -168,7 +169,7 @@ bool write_csv(const Recording& recording, const Model& model, const host::Targe
   std::optional<CsvFile> anchors;
   if (!model.anchors.empty())
     anchors.emplace(within("anchors.csv"), "time_s,anchor,tension_N,energy_J,natural_length_m,state");
-  const bool whole = each_frame(recording, model, proceed, [&](const FrameRow& row) {
+  const bool whole = each_frame(recording, setup, proceed, [&](const FrameRow& row) {
     bodies_rows(bodies, model, row);
     nodes_rows(nodes, model, row);
     elements_rows(elements, model, row);
@@ -187,7 +188,7 @@ bool write_csv(const Recording& recording, const Model& model, const host::Targe
 
 bool export_csv(const Recording& recording, const host::Target& folder, const Proceed& proceed) {
   const Scene scene = recorded_scene(recording);
-  return write_csv(recording, scene.setup.model, folder, proceed);
+  return write_csv(recording, scene.setup, folder, proceed);
 }
 
 }  // namespace topple::io

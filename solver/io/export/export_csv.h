@@ -15,10 +15,10 @@ namespace topple::io {
 /// when `proceed` gave it up. Throws WriteError, InputError.
 bool export_csv(const Recording& recording, const host::Target& folder, const Proceed& proceed = {});
 
-/// export_csv with the model given. `node` and `element` count from 0 within the body and within the member;
+/// export_csv with the setup given. `node` and `element` count from 0 within the body and within the member;
 /// numbers are the shortest that read back the same. Throws WriteError, InputError when the model is not that
 /// of the rows.
-bool write_csv(const Recording& recording, const Model& model, const host::Target& folder,
+bool write_csv(const Recording& recording, const Setup& setup, const host::Target& folder,
                const Proceed& proceed = {});
 
 }  // namespace topple::io

@@ -83,7 +83,7 @@ bool export_vtk(const Recording& recording, const host::Target& folder, const Pr
   std::string list =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
       "<Collection>\n";
-  const bool whole = each_frame(recording, model, proceed, [&](const FrameRow& row) {
+  const bool whole = each_frame(recording, scene.setup, proceed, [&](const FrameRow& row) {
     char name[32];
     std::snprintf(name, sizeof name, "frame-%06zu.vtp", files.size());
     write(name, frame_file(model, places, row));

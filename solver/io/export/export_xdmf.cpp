@@ -143,7 +143,7 @@ bool export_xdmf(const Recording& recording, const host::Target& target, const P
   XdmfFile file(target);
   const std::string fixed = fixed_parts(file, model);
   int number = 0;
-  if (!each_frame(recording, model, proceed,
+  if (!each_frame(recording, scene.setup, proceed,
                   [&](const FrameRow& row) { add_frame(file, model, row, number++, fixed); }))
     return false;
   file.commit();

@@ -115,12 +115,25 @@ ElementPlaces::ElementPlaces(const Model& model) {
   }
 }
 
-bool each_frame(const Recording& recording, const Model& model, const Proceed& proceed,
+std::vector<std::int64_t> exported_frames(const Recording& recording, const Setup& setup) {
+  const std::vector<std::int64_t> way = recording.frames_on_way_to(recording.newest_branch());
+  const std::vector<FrameKey>& keys = recording.index();
+  std::vector<std::int64_t> found;
+  for (std::size_t k = 0; k < way.size(); ++k) {
+    const double multiple = keys[way[k]].time * setup.run.output_rate;
+    const bool even = std::abs(multiple - std::round(multiple)) < k_row_slack;
+    const bool begins = k > 0 && k + 1 < way.size() && keys[way[k]].branch != keys[way[k - 1]].branch;
+    if (even || !begins || setup.run.analysis == Analysis::statics) found.push_back(way[k]);
+  }
+  return found;
+}
+
+bool each_frame(const Recording& recording, const Setup& setup, const Proceed& proceed,
                 const std::function<void(const FrameRow&)>& each) {
-  for (const std::int64_t i : recording.frames_on_way_to(recording.newest_branch())) {
+  for (const std::int64_t i : exported_frames(recording, setup)) {
     if (proceed && !proceed()) return false;
     const FrameRow row = recording.frame(i);
-    expect_same_model(model, row);
+    expect_same_model(setup.model, row);
     each(row);
   }
   return true;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/io/recording/recording.h"
-#include "solver/model/model.h"
+#include "solver/run/run.h"
 
 namespace topple::io {
 
@@ -80,9 +80,12 @@ void each_field(const Model& model, const FrameRow& row, Field field) {
 /// Asked before each frame that is exported; false gives the export up.
 using Proceed = std::function<bool()>;
 
-/// Calls `each` with every frame of the way to the newest branch. False when `proceed`, where there is one,
-/// gave it up. Throws InputError when a frame is not of `model`.
-bool each_frame(const Recording& recording, const Model& model, const Proceed& proceed,
+/// Indices of the frames on the way to the newest branch that are rows of its run: all but those with which
+/// branches begin between two multiples of the output interval.
+std::vector<std::int64_t> exported_frames(const Recording& recording, const Setup& setup);
+/// Calls `each` with every one of them. False when `proceed`, where there is one, gave it up. Throws
+/// InputError when a frame is not of the setup's model.
+bool each_frame(const Recording& recording, const Setup& setup, const Proceed& proceed,
                 const std::function<void(const FrameRow&)>& each);
 
 /// The shortest text that reads back as the same number.

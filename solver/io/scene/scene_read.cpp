@@ -90,7 +90,9 @@ void read_run(const Entry& root, Setup& setup) {
   setup.parameters.want_stress = !run.has("want") || run.names("want", "stress");
   setup.parameters.accuracy = run.number("accuracy");
   setup.parameters.gravity = run.vector("gravity");
-  if (run.word("integrator") != "auto") setup.parameters.integrator = run.chosen("integrator", integrators());
+  setup.parameters.automatic_integrator = run.word("integrator") == "auto";
+  if (!setup.parameters.automatic_integrator)
+    setup.parameters.integrator = run.chosen("integrator", integrators());
   setup.parameters.spectral_radius = run.number("spectral_radius");
   setup.parameters.beta = run.number("beta");
   setup.parameters.gamma = run.number("gamma");

@@ -135,7 +135,9 @@ TEST(EditText, errors_are_lines_in_the_words_of_a_scene) {
   EXPECT_EQ(refusal_of(number(Edit::Key::friction, 2.4), setup), "contact.friction: 2.4 is outside 0..1.5");
   EXPECT_EQ(refusal_of(number(Edit::Key::amplitude, 1200), setup),
             "shake.1.amplitude: 120000 gal is outside 0..100000 gal");
-  EXPECT_EQ(refusal_of(number(Edit::Key::time_step, 0), setup), "run.time_step: 0 s is outside 1e-07..0.1 s");
+  EXPECT_EQ(refusal_of(number(Edit::Key::time_step, 1e-8), setup),
+            "run.time_step: 1e-08 s is outside 1e-07..0.1 s");
+  EXPECT_EQ(refusal_of(number(Edit::Key::time_step, 0), setup), "");  // auto
   EXPECT_EQ(refusal_of(number(Edit::Key::alpha, nan), setup), "contact.alpha: nan is not a finite number");
   EXPECT_EQ(refusal_of(number(Edit::Key::alpha, infinity), setup),
             "contact.alpha: inf is not a finite number");
@@ -244,6 +246,7 @@ TEST(EditText, values_are_in_the_words_and_units_of_scenes) {
   expect(number(Edit::Key::anchor, 0), "false", "false");
   expect(number(Edit::Key::amplitude, 2), "200 gal", "\"200 gal\"");
   expect(number(Edit::Key::time_step, third), "0.333333 s", "0.3333333333333333");
+  expect(number(Edit::Key::time_step, 0), "auto", "\"auto\"");
   expect(number(Edit::Key::friction, third), "0.333333", "0.3333333333333333");
   expect(number(Edit::Key::q, 2), "2", "2.0");
   expect(number(Edit::Key::frequency, 2), "2 Hz", "\"2 Hz\"");

@@ -88,6 +88,13 @@ inline Model small_model() {
   return model;
 }
 
+/// Of that model, rows 100 a second.
+inline topple::Setup small_setup() {
+  topple::Setup setup;
+  setup.model = small_model();
+  return setup;
+}
+
 /// The row number `step`: every number differs from every other.
 inline FrameRow fake_row(const RowShape& shape, std::int64_t step, double time) {
   FrameRow row = blank_row(shape);

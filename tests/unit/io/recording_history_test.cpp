@@ -1,5 +1,6 @@
 // Branches and edits in a recording: what is written is read, along one way, and damage is seen.
 #include <cstring>
+#include <sstream>
 
 #include "recording_fixture.h"
 #include "solver/io/export/export_csv.h"
@@ -123,11 +124,34 @@ TEST_F(HistoryRecordingTest, the_way_to_a_branch_shows_each_instant_once) {
 
 TEST_F(HistoryRecordingTest, tables_follow_the_newest_branch) {
   record_forked(path("a.h5"));
-  write_csv(Recording(path("a.h5")), small_model(), path("csv"));
+  write_csv(Recording(path("a.h5")), small_setup(), path("csv"));
   const std::string floor = bytes_of(path("csv/floor.csv"));
   EXPECT_EQ(std::count(floor.begin(), floor.end(), '\n'), 37);
   EXPECT_NE(floor.find("\n0.29,"), std::string::npos);
   EXPECT_EQ(floor.find("\n0.36,"), std::string::npos);
+}
+
+// A branch begins where it was forked, which is a row of the run only at a multiple of the output interval.
+TEST_F(HistoryRecordingTest, tables_have_even_rows_where_a_branch_begins_between_two) {
+  const auto times = [this](bool goes_on) {
+    {
+      RecordingWriter writer(path("a.h5"), "fake", k_text, small_model(), k_small);
+      append_rows(writer, 0, 0, 3);
+      writer.append(Branch{1, 0, 3});
+      FrameRow first = row_of(1, 3);
+      first.time = 0.025;
+      writer.append(first);
+      if (goes_on) append_rows(writer, 1, 4, 5);
+      writer.finish("stopped", "{}");
+    }
+    write_csv(Recording(path("a.h5")), small_setup(), path("csv"));
+    std::string out;
+    std::istringstream floor(bytes_of(path("csv/floor.csv")));
+    for (std::string line; std::getline(floor, line);) out += line.substr(0, line.find(',')) + " ";
+    return out;
+  };
+  EXPECT_EQ(times(true), "time_s 0 0.01 0.02 0.04 0.05 ");
+  EXPECT_EQ(times(false), "time_s 0 0.01 0.02 0.025 ");  // there it is now
 }
 
 TEST_F(HistoryRecordingTest, a_reader_follows_edits_and_branches_as_they_are_written) {

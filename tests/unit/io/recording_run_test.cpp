@@ -86,6 +86,19 @@ TEST_F(RunRecordingTest, seek_equals_linear_replay) {
   }
 }
 
+// Its nodes are where they were when somebody looked last.
+TEST_F(RunRecordingTest, a_block_that_goes_on_from_a_checkpoint_bears_no_forces_in_its_sections) {
+  const Scene scene = load_scene("cabinet");
+  topple::Run whole(scene.setup);
+  while (whole.time() < 3) ASSERT_TRUE(whole.advance().ok());
+  State state = whole.state();
+  ASSERT_EQ(state.bodies[0].level, ModelLevel::planar);
+  state.position[0].z() += 0.01;
+  const topple::Run rest(scene.setup, state, scene.setup.parameters);
+  for (const SectionForces& forces : rest.sections())
+    EXPECT_TRUE(forces.normal.isZero(0) && forces.moment.isZero(0));
+}
+
 TEST_F(RunRecordingTest, an_exported_run_has_a_row_for_each_frame_and_thing) {
   record();
   export_csv(Recording(path("run.h5")), path("csv"));

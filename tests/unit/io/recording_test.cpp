@@ -176,7 +176,7 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
     writer.append(row);
     writer.finish("completed", "{}");
   }
-  write_csv(Recording(path("a.h5")), small_model(), path("out/csv"));
+  write_csv(Recording(path("a.h5")), small_setup(), path("out/csv"));
   EXPECT_EQ(bytes_of(path("out/csv/bodies.csv")),
             "time_s,body,x_m,y_m,z_m,qw,qx,qy,qz,tilt_deg,slide_m,energy_J\n"
             "0.1,\"shelf, \"\"blue\"\"\",0,0,0,0,0,0,0,90,0,0.3333333333333333\n"
@@ -201,10 +201,10 @@ TEST_F(RecordingTest, tables_have_the_columns_of_the_contract_and_shortest_numbe
 TEST_F(RecordingTest, tables_of_a_damaged_recording_do_not_appear_by_half) {
   record_small(path("a.h5"), 40);
   const Recording recording(path("a.h5"));
-  EXPECT_THROW(write_csv(recording, Model{}, path("out")), InputError);
+  EXPECT_THROW(write_csv(recording, topple::Setup{}, path("out")), InputError);
   EXPECT_TRUE(std::filesystem::is_empty(path("out")));
   write_bytes(path("file"), "");
-  EXPECT_THROW(write_csv(recording, small_model(), path("file/out")), WriteError);
+  EXPECT_THROW(write_csv(recording, small_setup(), path("file/out")), WriteError);
 }
 
 }  // namespace

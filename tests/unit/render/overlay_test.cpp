@@ -169,19 +169,20 @@ TEST(Overlay, labels_stay_in_their_room_and_apart) {
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const int before = list.VtxBuffer.Size;
   const OverlayBox room{"", 100, 50, 700, 450};
+  const OverlayBox taken{"words", 100, 50, 700, 80};
   draw_labels(list, fonts, frame, look_at({10, 0, 1}, {0, 0, 1}, {0, 0, 1}, 1.5f, 0.1f, 100), room,
-              room.bottom);
+              room.bottom, std::span(&taken, 1));
   ASSERT_GT(list.VtxBuffer.Size, before);
   for (int i = before; i < list.VtxBuffer.Size; ++i) {
     const ImVec2 p = list.VtxBuffer[i].pos;
-    EXPECT_TRUE(p.x >= room.left - 1 && p.x <= room.right + 1 && p.y >= room.top - 1 &&
+    EXPECT_TRUE(p.x >= room.left - 1 && p.x <= room.right + 1 && p.y >= taken.bottom - 1 &&
                 p.y <= room.bottom + 1)
         << p.x << ", " << p.y;
   }
   // 60 mm are 10 px here, and each label is over 14 px high: they had to move apart
   float top = 1e9f, bottom = 0;
   for (int i = before; i < list.VtxBuffer.Size; ++i) {
-    if (list.VtxBuffer[i].pos.y < room.top + 30) continue;  // that of far above
+    if (list.VtxBuffer[i].pos.y < taken.bottom + 30) continue;  // that of far above
     top = std::min(top, list.VtxBuffer[i].pos.y);
     bottom = std::max(bottom, list.VtxBuffer[i].pos.y);
   }

@@ -298,6 +298,7 @@ TEST(Summary, each_body_says_what_moved_it_and_from_which_angle_uplift_counts) {
   const auto s = summary(scene, run, "completed", 0.5);
   EXPECT_EQ(s["bodies"][0]["integrator"], "central-difference");
   EXPECT_EQ(s["bodies"][1]["integrator"], "generalized-alpha");
+  EXPECT_EQ(s["integrator"], "central-difference, generalized-alpha");
   EXPECT_DOUBLE_EQ(s["uplift_threshold_deg"], 0.05);
 }
 
@@ -376,7 +377,7 @@ TEST(Ways, what_was_closed_before_is_told_as_the_same_where_it_is) {
   way["caught"] = true;
   way["widest_m"] = 0.;
   EXPECT_EQ(ways_in_words(Json{way}, 0.5),
-            "place desk: cannot leave, a is where they are, closed before the shake, too\n");
+            "place desk: cannot leave, blocked where they are by a, closed before the shake, too\n");
 }
 
 TEST(Letters, a_letter_of_several_bytes_is_one_and_so_is_a_byte_that_is_none) {

@@ -1,4 +1,6 @@
 // Static runs and natural modes from the command line.
+#include <fmt/format.h>
+
 #include "unit/app/program.h"
 #include "unit/app/scenes.h"
 
@@ -95,6 +97,67 @@ members = [{ nodes = [0, 1], section = "bar", material = "steel", elements = )" 
   EXPECT_EQ(told("16", "-26300").find("half wave"), std::string::npos);
   EXPECT_EQ(told("2", "26300").find("half wave"), std::string::npos);  // pulled
   EXPECT_EQ(told("2", "-700").find("half wave"), std::string::npos);   // 6.1 elements
+}
+
+// The tip of a mast of 1 m is drawn aside: a hinge bends at its foot, until the mast would have to be longer.
+TEST_F(AnalysisTest, a_path_beyond_the_reach_of_what_yields_is_told) {
+  const auto told = [&](const char* to) {
+    write_bytes("mast.toml",
+                std::string("topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\n") +
+                    "load_steps = 40\ncontrol = { body = \"mast\", node = 1, dof = \"x\", to = " + to +
+                    R"( }
+[[material]]
+name = "steel"
+young = "205 GPa"
+poisson = 0.3
+density = "7850 kg/m^3"
+yield = "235 MPa"
+[[section]]
+name = "bar"
+shape = "solid"
+size = ["20 mm", "20 mm"]
+[[frame]]
+name = "mast"
+nodes = [[0, 0, 0], [0, 0, 1]]
+members = [{ nodes = [0, 1], section = "bar", material = "steel", elements = 4, up = [1, 0, 0] }]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+loads = [{ node = 1, force = [100, 0, 0] }]
+)");
+    return topple({"run", "mast.toml", "--quiet"}).err;
+  };
+  const std::string beyond = told("1.5");
+  EXPECT_NE(beyond.find("element 0 of member \"member-0\" of \"mast\" became"), std::string::npos) << beyond;
+  EXPECT_NE(beyond.find("% longer, which no steel does"), std::string::npos) << beyond;
+  EXPECT_EQ(told("0.8").find("longer"), std::string::npos);
+}
+
+// When its weaker column breaks, hinges of a portal unload; the other column carries Mp/h = 812 N alone, and
+// 4 % more where it leans by 300 mm and is 954 mm high. At whatever load step it broke.
+TEST_F(AnalysisTest, a_portal_goes_on_when_a_column_breaks_whatever_its_steps_are) {
+  const auto material = [](const char* name, const char* more) {
+    return "[[material]]\nname = \"" + std::string(name) +
+           "\"\nyoung = \"205 GPa\"\npoisson = 0.3\ndensity = 7850\nyield = \"235 MPa\"\n" + more;
+  };
+  for (const char* steps : {"20", "40", "100", "200"}) {
+    write_bytes("portal.toml",
+                "topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\nload_steps = " +
+                    std::string(steps) + "\ncontrol = { node = 1, dof = \"x\", to = \"300 mm\" }\n" +
+                    material("tough", "") + material("brittle", "fracture_strain = 0.003\n") + R"(
+[[frame]]
+name = "portal"
+nodes = [[0, 0, 0], [0, 0, 1], [1, 0, 1], [1, 0, 0]]
+members = [{ nodes = [0, 1], section = "solid 24", material = "tough", up = [1, 0, 0] },
+           { nodes = [1, 2], section = "solid 20", material = "tough" },
+           { nodes = [2, 3], section = "solid 20", material = "brittle", up = [1, 0, 0] }]
+supports = [{ node = 0, fix = "xyzXYZ" }, { node = 3, fix = "xyzXYZ" }, { node = 1, fix = "yXZ" }, { node = 2, fix = "yXZ" }]
+loads = [{ node = 1, force = [100, 0, 0] }]
+)");
+    const Ended ended = topple({"run", "portal.toml", "--json", "-", "--quiet"});
+    ASSERT_EQ(ended.code, 0) << steps << ended.err;
+    const Json s = Json::parse(ended.out);
+    EXPECT_EQ(s["bodies"][0]["fractures"], 1);
+    EXPECT_NEAR(s["static"].back()["factor"].get<double>(), 8.451, 1e-3) << steps;
+  }
 }
 
 class FailureTest : public AnalysisTest {
@@ -315,6 +378,27 @@ TEST_F(AnalysisTest, adaptive_and_newmark_runs_say_so) {
   const Json s = Json::parse(explicit_run.out);
   EXPECT_NEAR(s["time_step_s"], 0.9 * s["explicit_limit_s"].get<double>(),
               0.01 * s["explicit_limit_s"].get<double>());  // the last step is a part of one
+}
+
+// gamma > 2 beta: stable up to 1/sqrt(gamma/2 - beta)/2 = 2.236 times the limit of central differences.
+TEST_F(AnalysisTest, newmark_that_is_stable_up_to_a_step_tells_that_step_and_keeps_to_it) {
+  write_bytes("beam.toml", k_beam);
+  const auto run = [](std::vector<std::string> more) {
+    std::vector<std::string> words{"run", "beam.toml", "--set", "run.duration=0.02", "--json", "-"};
+    words.insert(words.end(), more.begin(), more.end());
+    return topple(words);
+  };
+  const Json explicit_run =
+      Json::parse(run({"--set", "run.integrator=central-difference", "--set", "run.time_step=auto"}).out);
+  const double limit = std::sqrt(5.) * explicit_run["explicit_limit_s"].get<double>();
+  const std::vector<std::string> newmark{"--set", "run.integrator=newmark", "--set", "run.gamma=0.6"};
+  std::vector<std::string> adaptive = newmark, fixed = newmark;
+  adaptive.insert(adaptive.end(), {"--set", "run.time_step=auto"});
+  fixed.insert(fixed.end(), {"--set", fmt::format("run.time_step={}", 0.99 * limit)});
+  const Json of_adaptive = Json::parse(run(adaptive).out), of_fixed = Json::parse(run(fixed).out);
+  EXPECT_NEAR(of_fixed["explicit_limit_s"].get<double>(), limit, 1e-6 * limit);
+  EXPECT_NEAR(of_adaptive["explicit_limit_s"].get<double>(), limit, 1e-6 * limit);
+  EXPECT_LE(of_adaptive["time_step_s"].get<double>(), 0.9 * limit);
 }
 
 }  // namespace

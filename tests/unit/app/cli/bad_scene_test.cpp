@@ -119,6 +119,15 @@ TEST_F(BadSceneTest, every_bad_scene_of_a_check_is_told) {
       << ended.err;
 }
 
+// With q = 2 the alpha of a rigid floor is beyond what may be named.
+TEST_F(BadSceneTest, no_alpha_is_advised_that_no_scene_may_name) {
+  write_bytes("s.toml", k_shaken);
+  const std::string words = topple({"check", "s.toml", "--set", "contact.q=2"}).err;
+  EXPECT_NE(words.find("no alpha at all takes 1000000 kgf, the greatest there is"), std::string::npos)
+      << words;
+  EXPECT_EQ(words.find("as on a rigid floor too"), std::string::npos) << words;
+}
+
 TEST_F(BadSceneTest, a_shake_that_rows_do_not_follow_is_warned_of) {
   const Ended ended = topple({"check", "wardrobe", "--set", "shake.1.frequency=\"30 Hz\""});
   EXPECT_NE(ended.err.find("shake 1 of 30 Hz is too fast for rows at 100 Hz"), std::string::npos)
@@ -158,7 +167,7 @@ TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
                             block("vase", "4.15, 0, 0.21");
   const std::string bracket =
       "[[anchor]]\nname = \"bracket\"\nbody = \"free\"\npoint = [-0.19, 0, 1.79]\nto = [-0.25, 0, 1.79]\n"
-      "type = \"bracket\"\nstiffness = \"1000 kN/m\"\n";
+      "type = \"bracket\"\nstiffness = \"1000 kN/m\"\npreload = \"900 N\"\nstrength = \"500 N\"\n";
   write_bytes("s.toml", changed("alpha = \"50 kgf\"\n", "") + hangs + bracket);
   const Ended ended = topple({"check", "s.toml"});
   EXPECT_EQ(ended.code, 0);
@@ -169,6 +178,9 @@ TEST_F(BadSceneTest, what_will_surprise_is_warned_of) {
         "the centre of gravity of \"vase\" is 45 mm beside \"shelf\""})
     EXPECT_NE(ended.err.find(words), std::string::npos) << ended.err;
   EXPECT_NE(ended.err.find("anchor \"bracket\" holds \"free\" in the middle of its member"),
+            std::string::npos)
+      << ended.err;
+  EXPECT_NE(ended.err.find("anchor \"bracket\" is put in with 900 N, above its strength of 500 N"),
             std::string::npos)
       << ended.err;
   EXPECT_EQ(ended.err.find("is soft"), std::string::npos) << ended.err;

@@ -66,6 +66,64 @@ TEST_F(CompareTest, what_was_changed_before_the_first_step_is_what_the_run_began
   EXPECT_NE(ended.out.find("no parameter differs"), std::string::npos) << ended.out;
 }
 
+TEST_F(CompareTest, what_was_changed_while_it_ran_stands_with_its_value_and_its_time) {
+  record("weak.h5", "shake.table.amplitude=0.1 g");
+  const io::Scene scene = io::load_scene("s.toml");
+  topple::Run run(scene.setup);
+  io::Recorder recorder({"edited.h5", false}, scene.name, scene.text, scene.setup.model);
+  io::Observer observer;
+  recorder.write(observer.observe(run));
+  while (run.time() < 0.1 && run.advance().ok()) recorder.write(observer.observe(run));
+  const Edit weaker{Edit::Key::amplitude, 0, Vec3(0.980665, 0, 0)};
+  recorder.write(LoggedEdit{0, run.step(), run.time(), weaker});
+  run.edit(weaker);
+  while (!run.over() && run.advance().ok()) recorder.write(observer.observe(run));
+  recorder.finish("completed", summary(scene, run, "completed", 1).dump());
+  const Ended ended = topple({"compare", "edited.h5", "weak.h5"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const std::string::size_type edit = ended.out.find("edit 1 while it ran");
+  ASSERT_NE(edit, std::string::npos) << ended.out;
+  const std::string line = ended.out.substr(edit, ended.out.find('\n', edit) - edit);
+  EXPECT_NE(line.find("shake.1.amplitude = 98.0665 gal from 0.1"), std::string::npos) << line;
+  EXPECT_TRUE(line.ends_with(" -")) << line;
+}
+
+// Of a bar with Mp = 50 N m at its foot, bent by its tip at 1 m.
+// load.
+TEST_F(CompareTest, static_runs_have_their_greatest_load_and_their_hinges) {
+  const auto bar = [](const char* force) {
+    return std::string("topple = 1\n[run]\nanalysis = \"static\"\ngravity = [0, 0, 0]\nload_steps = 2\n") +
+           R"(
+[[material]]
+name = "steel"
+young = "200 GPa"
+poisson = 0.3
+density = "7850 kg/m^3"
+yield = "200 MPa"
+[[section]]
+name = "bar"
+shape = "solid"
+size = ["10 mm", "10 mm"]
+[[frame]]
+name = "bar"
+nodes = [[0, 0, 0], [0, 0, 1]]
+supports = [{ node = 0, fix = "xyzXYZ" }]
+members = [{ nodes = [0, 1], section = "bar", material = "steel" }]
+loads = [{ node = 1, force = [)" +
+           force + ", 0, 0] }]\n";
+  };
+  write_bytes("elastic.toml", bar("10"));
+  write_bytes("plastic.toml", bar("70"));  // Mp = 50 N m
+  const Ended ended = topple({"compare", "elastic.toml", "plastic.toml", "--quiet", "--json", "c.json"});
+  const Json c = json_of(bytes_of("c.json"));
+  EXPECT_EQ(c["a"]["greatest_load_factor"], 1);
+  EXPECT_EQ(c["bodies"][0]["a"]["hinges"], 0);
+  EXPECT_GE(c["bodies"][0]["b"]["hinges"], 1);
+  EXPECT_NE(ended.out.find("greatest load factor   1 "), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("bar: hinges"), std::string::npos) << ended.out;
+  EXPECT_EQ(ended.out.find("fractures"), std::string::npos) << ended.out;
+}
+
 TEST_F(CompareTest, anchors_that_are_not_in_place_are_said_to_be_so) {
   write_bytes("strap.toml", k_shaken + k_straps);
   EXPECT_EQ(topple({"run", "strap.toml", "--set", "anchor.weak.on=false", "--set", "anchor.strong.on=false",

@@ -70,14 +70,16 @@ TEST_F(VerifyTest, branches_and_edits_are_listed_and_run_again) {
   EXPECT_EQ(json["branches"], json_of(R"([{"id": 0, "parent": -1, "fork_step": 0},
                                           {"id": 1, "parent": 0, "fork_step": 100}])"));
   EXPECT_EQ(json["edits"], json_of(R"([
-      {"branch": 0, "step": 0, "time_s": 0.0, "key": "contact.alpha", "value": 2000.0},
+      {"branch": 0, "step": 0, "time_s": 0.0, "key": "contact.alpha", "value": 2000.0,
+       "shown": "203.943 kgf"},
       {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "shake.1.direction",
-       "value": [1.0, 2.0, 0.0]},
+       "value": [1.0, 2.0, 0.0], "shown": "[1, 2, 0]"},
       {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "run.integrator",
-       "value": "generalized-alpha"},
+       "value": "generalized-alpha", "shown": "generalized-alpha"},
       {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "run.want",
-       "value": ["motion", "stress"]},
-      {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "shake.1.on", "value": 1.0}])"));
+       "value": ["motion", "stress"], "shown": "[motion, stress]"},
+      {"branch": 1, "step": 100, "time_s": 0.10000000000000007, "key": "shake.1.on", "value": 1.0,
+       "shown": "true"}])"));
   EXPECT_EQ(json["frames"], 31 + 21);
 }
 

@@ -161,6 +161,31 @@ TEST_F(PlayerTest, undo_posts_the_inverse_and_redo_the_edit_again) {
   expect_repeatable("live.h5", 1);
 }
 
+TEST_F(PlayerTest,
+       a_step_and_an_integrator_that_were_chosen_by_the_program_are_so_again_when_that_is_taken_back) {
+  std::string scene = k_rocking;
+  scene.replace(scene.find("[run]"), 5, "[run]\ntime_step = \"auto\"");
+  start(scene);
+  run_to(0.05);
+  const Parameters before = player().parameters();
+  ASSERT_TRUE(before.adaptive);
+  const auto taken_back = [&](Edit::Key key, double value) {
+    const Vec3 in_scene = edited_value(before, key, 0);
+    player().begin_edit();
+    player().edit({key, 0, Vec3(value, 0, 0)});
+    EXPECT_NE(player().parameters(), before);
+    player().undo();
+    EXPECT_EQ(edited_value(player().parameters(), key, 0), in_scene);
+  };
+  taken_back(Edit::Key::time_step, 2e-3);
+  EXPECT_TRUE(player().parameters().adaptive);
+  taken_back(Edit::Key::integrator, static_cast<double>(Integrator::newmark));
+  EXPECT_EQ(player().parameters().integrator, Integrator::generalized_alpha);
+  run_to(0.1);
+  run_->close("stopped");
+  expect_repeatable("live.h5", 1);
+}
+
 TEST_F(PlayerTest, an_anchor_is_taken_away_and_put_back_and_the_run_repeats) {
   start(k_rocking + k_straps);
   run_to(0.2);

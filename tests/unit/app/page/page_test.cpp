@@ -63,6 +63,26 @@ TEST(PageRows, many_rows_are_thinned_to_four_mebibytes) {
   }
 }
 
+// Rows beside the peaks of a sine of 1 Hz: 95.1 gal of 100.
+TEST(PageRows, the_peak_of_the_floor_is_that_of_the_run_and_not_of_the_rows_that_are_kept) {
+  const io::Scene scene = io::parse_scene(
+      "topple = 1\nshake = [{ type = \"sine\", amplitude = \"100 gal\", frequency = 1 }]\n"
+      "block = [{ name = \"box\", size = [1, 1, 1], mass = 1 }]\n",
+      "s");
+  std::vector<Shake> shakes = scene.setup.parameters.shakes;
+  std::vector<io::FrameRow> rows;
+  for (const double time : {0.1, 0.4, 0.6, 0.8}) {
+    io::FrameRow& row = rows.emplace_back();
+    row.time = time;
+    const Vec3 floor = floor_acceleration(shakes, time);
+    for (int k = 0; k < 3; ++k) row.floor_acceleration[k] = floor[k];
+  }
+  EXPECT_NEAR(std::abs(floor_along(rows[1], shakes)), 0.588, 1e-3);
+  EXPECT_NEAR(floor_peak(rows, shakes), 1, 1e-9);
+  shakes[0].amplitude *= 2;  // the rows are those of another motion
+  EXPECT_NEAR(floor_peak(rows, shakes), 0.951, 1e-3);
+}
+
 TEST(PageControls, each_changes_the_scene_as_it_says) {
   for (const char* name :
        {"paper-a", "anchored", "cabinet", "near-fault", "desk", "folding-leg", "weak-storey"}) {

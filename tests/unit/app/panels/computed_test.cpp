@@ -42,6 +42,10 @@ TEST_F(ComputedTest, the_model_its_reason_and_what_moves_it_are_said) {
   run_to_end();
   EXPECT_EQ(computed_in_words(*player_, 0), "now frame (asked for): generalized-alpha");
   EXPECT_EQ(integrators_in_words(*player_), "");
+  start({"cabinet.free.model=auto", "run.accuracy=1e-6", "run.time_step=auto", "run.duration=0.1"});
+  run_to_end();
+  EXPECT_EQ(integrators_in_words(*player_),
+            "of frames; at work now: generalized-alpha or, where cheaper, central differences");
 }
 
 // Steps and time between frames are the run's own.

@@ -546,7 +546,7 @@ at = [1, 1, 0]
   const Bridge bridge(scene, extent);
   render::SceneFrame frame = bridge.frame(row, setup.parameters);
   const std::vector<std::string>& lines = frame.caption.lines;
-  for (const char* told : {"seat: cannot leave, box is where they are", "seat: hit by box at 1.0 s"})
+  for (const char* told : {"seat: cannot leave, blocked where they are by box", "seat: hit by box at 1.0 s"})
     EXPECT_NE(std::ranges::find(lines, told), lines.end()) << told;
   EXPECT_GE(frame.caption.most_lines, static_cast<int>(lines.size()));
   for (const std::string& line : Bridge(scene, extent, false).frame(row, setup.parameters).caption.lines)

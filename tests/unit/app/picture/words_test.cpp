@@ -71,6 +71,31 @@ TEST(Words, a_shake_that_is_on_its_way_to_another_amplitude_says_what_it_is_now)
   EXPECT_EQ(shake_in_words(parameters, 0.1 + 0.5 / 4), "floor: 2 Hz, 200 gal");
 }
 
+// A cabinet turns about the edge of its base by 30 degrees, which moves the middle of the base by b (1 - cos
+// 30), 25 mm, and then slides 7 mm.
+TEST(Words, what_turns_about_an_edge_has_not_slid) {
+  const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
+  const Model& model = scene.setup.model;
+  const Body& body = model.bodies[0];
+  const double angle = 30 / k_degrees;
+  Vec3 edge = body.base_centre;
+  for (const Vec3& corner : body.support_polygon) edge.x() = std::max(edge.x(), corner.x());
+  for (const double slid : {0., 0.007}) {
+    io::FrameRow row = io::frame_row(topple::Run(scene.setup));
+    const Quat turn(std::cos(angle / 2), 0, std::sin(angle / 2), 0);
+    const Vec3 centre = edge + turn * (body.centre_of_gravity - edge) + slid * Vec3::UnitY();
+    io::BodyNumbers& now = row.body[0];
+    now.x = centre.x(), now.y = centre.y(), now.z = centre.z();
+    now.qw = turn.w(), now.qx = turn.x(), now.qy = turn.y(), now.qz = turn.z();
+    now.tilt = angle;
+    now.slide = (edge - body.base_centre).norm() * (1 - std::cos(angle));
+    EXPECT_GT(now.slide, 0.02);
+    EXPECT_EQ(body_in_words(model, scene.setup.parameters.gravity, row, 0),
+              fmt::format("free: tipped, rests at 30.0° (critical {:.1f}°){}", now.critical_angle * k_degrees,
+                          slid > 0 ? ", slid 7 mm" : ""));
+  }
+}
+
 TEST(Words, what_falls_has_not_fallen_before_it_lies) {
   const io::Scene scene = io::parse_scene(k_shaken, "s.toml");
   const Model& model = scene.setup.model;

@@ -19,6 +19,12 @@ bool holds(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// It is a planar block throughout.
+constexpr const char* k_lone_block =
+    "topple = 1\n[run]\nduration = 0.3\nwant = [\"motion\"]\n[floor]\n"
+    "[[shake]]\ntype = \"sine\"\namplitude = \"100 gal\"\nfrequency = 1\n"
+    "[[block]]\nname = \"box\"\nsize = [0.4, 0.5, 1.8]\nmass = 50\n";
+
 /// The page of a run of k_shaken, made without pictures and trials.
 class ReportPageTest : public ::testing::Test {
  protected:
@@ -117,6 +123,17 @@ TEST_F(ReportPageTest, what_moved_a_body_is_named_and_not_what_frames_would_have
   EXPECT_TRUE(holds(html, "<td>central differences</td>"));
   EXPECT_FALSE(holds(html, "generalized-alpha"));
   EXPECT_TRUE(holds(html, "rigid motion with elastic modes"));
+}
+
+TEST_F(ReportPageTest, planar_blocks_are_not_said_to_stand_on_springs) {
+  EXPECT_TRUE(holds(page(), "penalty coefficient"));
+  const io::Scene scene = io::parse_scene(k_lone_block, "s.toml");
+  tell_of(scene);
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "rigid block in a vertical plane"));
+  EXPECT_FALSE(holds(html, "penalty"));
+  EXPECT_FALSE(holds(html, "is a spring"));
+  EXPECT_TRUE(holds(html, "a planar block has no springs"));
 }
 
 TEST_F(ReportPageTest, elastic_stresses_are_not_said_to_be_those_of_steel) {

@@ -293,8 +293,8 @@ std::map<std::string, std::function<double&(Parameters&)>> numbers_of(const Para
     out[name + "ramp.over"] = [i](Parameters& p) -> double& { return p.shakes[i].ramp.over; };
   }
   [[maybe_unused]] const auto& [contact, contact_before, contact_ramp, shakes, models, damping, anchors,
-                                pulls, want_stress, accuracy, gravity, integrator, spectral_radius, beta,
-                                gamma, time_step, adaptive, tolerance, substep_refinement,
+                                pulls, want_stress, accuracy, gravity, integrator, automatic, spectral_radius,
+                                beta, gamma, time_step, adaptive, tolerance, substep_refinement,
                                 resolves_contacts] = all;
   for (std::size_t i = 0; i < all.pulls.size(); ++i) {
     const std::string name = "pull " + std::to_string(i) + " ";
