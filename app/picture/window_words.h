@@ -282,9 +282,8 @@ inline constexpr Phrase k_time_step_about{"{0}", "時間積分の刻み"};
 inline constexpr Phrase k_law_about{"{0}", "接触力の計算則"};
 inline constexpr Phrase k_integrator_about{"{0}", "時間積分の方法"};
 inline constexpr Phrase k_model_about{"{0}", "家具の計算モデル"};
-inline constexpr Phrase k_slider_about{
-    "{0}: {1}\nallowed {2}, in the scene {3}\nCtrl+click to type",
-    "{0}：{1}\n許容範囲 {2}、シーンの値 {3}\nCtrl+クリックで数値入力"};
+inline constexpr Phrase k_slider_about{"{0}: {1}\nallowed {2}, in the scene {3}\nCtrl+click to type",
+                                       "{0}：{1}\n許容範囲 {2}、シーンの値 {3}\nCtrl+クリックで数値入力"};
 inline constexpr Phrase k_key_about{"{0}: {1}", "{0}：{1}"};
 inline constexpr Phrase k_back_to_scene{"Back to the scene's value", "シーンの値に戻す"};
 inline constexpr Phrase k_too_fast_for_rows{
