@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "app/support/terms.h"
@@ -146,6 +148,20 @@ void warn_of_stress(const Run& run, Warnings& list) {
   }
 }
 
+// Of a path that leapt from one break to the next.
+void warn_of_breaks(const Run& run, Warnings& list) {
+  std::map<std::int64_t, int> broken;  // by load step
+  for (const Event& event : run.events())
+    if (event.kind == Event::Kind::fracture) ++broken[event.step];
+  const auto most = std::ranges::max_element(broken, {}, [](const auto& of) { return of.second; });
+  if (most == broken.end() || most->second < 2) return;
+  list.push_back(fmt::format(
+      "{} sections broke in load step {}: when one breaks the path leaps to the next equilibrium, and what "
+      "there is in "
+      "between is not seen; more run.load_steps, or run.control by a displacement, may stop there",
+      most->second, most->first));
+}
+
 // Of the element whose nodes flowed apart or together most.
 void warn_of_stretch(const Run& run, Warnings& list) {
   const Model& model = run.setup().model;
@@ -264,6 +280,7 @@ std::vector<std::string> run_warnings(const Run& run) {
   warn_of_instability(run, list);
   if (is_static(run.setup())) {
     warn_of_few_elements(run, list);
+    warn_of_breaks(run, list);
     return list;
   }
   if (!run.parameters().adaptive) warn_of_step(run, list);

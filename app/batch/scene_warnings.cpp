@@ -70,6 +70,20 @@ void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::st
   }
 }
 
+/// What stands on a body that stoppers lean starts level, within it.
+void warn_of_wedges(const Setup& setup, std::vector<std::string>& list) {
+  const std::vector<Bearer> bearers = bearers_of(setup.model, setup.starts);
+  for (const Wedge& wedge : setup.wedges)
+    for (std::size_t b = 0; wedge.in_place() && b < bearers.size(); ++b)
+      if (bearers[b].body == wedge.body)
+        list.push_back(fmt::format(
+            "\"{}\" stands on \"{}\", which \"{}\" lifts by {:.2g} mm on one side: it starts level, partly "
+            "within it, "
+            "and what holds the two together is strained by that; `at` so much higher lets it down on it",
+            setup.model.bodies[b].name, setup.model.bodies[static_cast<std::size_t>(wedge.body)].name,
+            wedge.name, 1e3 * wedge.lift));
+}
+
 /// Where a wall pushes a body away as the run begins.
 void warn_of_walls(const Setup& setup, const State& start, std::vector<std::string>& list) {
   const Model& model = setup.model;
@@ -156,6 +170,8 @@ double rounded_up(double value) {
 /// Greatest part of the steady acceleration that tips a body on a rigid floor by which it tips earlier here,
 /// as far as its weight on one edge tells, or exactly where it stands freely.
 std::optional<double> early_tipping(const Model& model, const Parameters& p) {
+  const auto on_hard_floor = [](BodyModel body) { return body == BodyModel::planar; };
+  if (!p.models.empty() && std::ranges::all_of(p.models, on_hard_floor)) return std::nullopt;
   std::optional<double> early = early_uplift(model, p.contact, p.gravity);
   if (!early || *early <= k_early) return early;
   for (int b = 0; b < model.furniture_total(); ++b) {
@@ -223,6 +239,7 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   if (setup.run.analysis != Analysis::dynamic) return list;
   const State start = start_state(setup.model, setup.starts);
   warn_of_anchors(setup, start, list);
+  warn_of_wedges(setup, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
   warn_of_overlaps(setup, start, list);

@@ -88,9 +88,21 @@ std::string static_head(const ordered_json& s) {
            std::ranges::all_of(std::array{"converged", "loss", "negative_pivots"},
                                [&](const char* key) { return steps[end][key] == first[key]; }))
       ++end;
-    out += "load factor " + text(first["factor"], "{:.6g}");
-    if (end > k + 1)
-      out += fmt::format(" to {} in {} steps", text(steps[end - 1]["factor"], "{:.6g}"), end - k);
+    const auto factor = [&](const ordered_json& step) {
+      const bool nothing =
+          step["factor"].is_number() && std::abs(step["factor"].get<double>()) < k_nothing * greatest;
+      return nothing ? std::string("0") : text(step["factor"], "{:.6g}");
+    };
+    out += "load factor " + factor(first);
+    if (end > k + 1) {
+      double most = 0;
+      for (std::size_t i = k; i < end; ++i)
+        if (std::abs(steps[i]["factor"].get<double>()) > std::abs(most))
+          most = steps[i]["factor"].get<double>();
+      const std::string passed = fmt::format("{:.6g}", most), last = factor(steps[end - 1]);
+      out += fmt::format(" to {} in {} steps{}", last, end - k,
+                         passed != last && passed != factor(first) ? ", greatest " + passed : "");
+    }
     out += fmt::format(": {}{}\n",
                        first["converged"].get<bool>() ? "converged"
                        : s["status"] == "stopped"     ? "not stable, the path ends"

@@ -141,7 +141,10 @@ class Row {
     if (ImGui::IsItemDeactivated()) {
       const float last = typed.GetFloat(item, k_nothing);
       typed.SetFloat(item, k_nothing);
-      if (last != k_nothing) post(from_shown(decimal(last)));
+      if (last != k_nothing) {  // another may have been begun with the click that ends this one
+        post_anew(from_shown(decimal(last)));
+        player_.begin_edit();
+      }
     }
     end();
   }

@@ -83,7 +83,7 @@ inline constexpr Phrase k_exists{"{0} exists already.", "{0} はすでにあり�
 inline constexpr Phrase k_replace{"Replace it", "置き換える"};
 inline constexpr Phrase k_save_now{"Save", "保存"};
 inline constexpr Phrase k_written{"Written: {0}", "書き出しました: {0}"};
-inline constexpr Phrase k_given_up{"Written: {0}. No scene can also state: {1}",
+inline constexpr Phrase k_given_up{"Written: {0}, without {1}, which does not go with the rest in a scene",
                                    "書き出しました: {0}。シーンに書けない値: {1}"};
 inline constexpr Phrase k_not_written{"Not written: {0}", "書き出せません: {0}"};
 

@@ -177,8 +177,8 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::toppling:
       line += say(k_toppling, tilt, critical);
       break;
-    case Stance::tipped:
-      line += say(k_tipped, tilt, critical);
+    case Stance::tipped:  // at the start everything is at rest
+      line += row.step == 0 ? say(k_tilted, tilt) : say(k_tipped, tilt, critical);
       break;
     case Stance::leaning:
       line += say(k_leaning, tilt, critical);

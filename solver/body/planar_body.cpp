@@ -98,6 +98,8 @@ Beginning beginning(const Model& model, const Parameters& parameters, const Stat
     out.why = traits(obstacle).phrase;
   else if (out.block->bounces)
     out.why = "its contacts bounce";
+  else if (!asked && parameters.contact.excess() > 0)
+    out.why = "its friction falls as it slips, that of a block at once";
   else if (!asked && hard_floor_error(model, body, *out.block, parameters.contact) +
                              rigid_error(model, parameters, body) >
                          parameters.accuracy)

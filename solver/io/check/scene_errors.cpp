@@ -76,7 +76,9 @@ class Collector {
       }
     ranges::stable_sort(found_, {},
                         [](const Found& one) { return std::tuple(one.place.line, one.place.column); });
-    for (Found& one : found_) result.errors.push_back(std::move(one.line));
+    for (Found& one : found_)
+      if (ranges::find(result.errors, one.line) == result.errors.end())
+        result.errors.push_back(std::move(one.line));
     return result;
   }
 
@@ -117,6 +119,8 @@ class Collector {
     } else {
       const Trail list(as_written.begin(), as_written.end() - 1);
       names_.insert(entry_name(*as_written.back().first, item_of(list.back()).key, as_written.back().second));
+      // a piece of furniture is called after its kind
+      if (const Node* const kind = item_of(as_written.back()).value.find("kind")) names_.insert(kind->text);
       if (list.size() > 1) keys_.insert(path_of(list));
     }
     holder.items.erase(holder.items.begin() + static_cast<std::ptrdiff_t>(index));
@@ -159,8 +163,9 @@ class Collector {
     const auto is_kind = [](const std::string& path) {
       return path.starts_with("furniture.") && path.ends_with(".kind");
     };
-    if (message.starts_with(std::string(k_there_is_no) + "[[furniture]]") && ranges::any_of(keys_, is_kind))
-      return true;  // it may be the piece that is called after its kind
+    for (const char* what : {"[[furniture]]", "body"})
+      if (message.starts_with(std::string(k_there_is_no) + what) && ranges::any_of(keys_, is_kind))
+        return true;  // it may be the piece that is called after its kind
     // copies of an entry are called after it
     return ranges::any_of(names_, [&](const std::string& name) {
       return message.find('"' + name + '"') != std::string::npos ||

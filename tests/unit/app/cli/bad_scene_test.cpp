@@ -128,6 +128,48 @@ TEST_F(BadSceneTest, no_alpha_is_advised_that_no_scene_may_name) {
   EXPECT_EQ(words.find("as on a rigid floor too"), std::string::npos) << words;
 }
 
+TEST_F(BadSceneTest, what_stands_on_a_piece_that_a_stopper_leans_is_warned_of) {
+  write_bytes("s.toml", R"(topple = 1
+floor = {}
+[[wall]]
+name = "back"
+at = [0, 0]
+normal = [1, 0, 0]
+[[furniture]]
+kind = "chest"
+against = "back"
+[[furniture]]
+kind = "television"
+size = ["200 mm", "700 mm", "450 mm"]
+at = [0.24, 0, 1.0]
+[[fixing]]
+name = "St"
+kind = "stopper"
+body = "chest"
+to = "floor"
+)");
+  const Ended ended = topple({"check", "s.toml"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("\"television\" stands on \"chest\", which \"St\" lifts by "), std::string::npos)
+      << ended.err;
+}
+
+// The refrigerator is there, but overlaps another; a misspelt kind is a piece that others may mean.
+TEST_F(BadSceneTest, what_refers_to_a_piece_that_has_an_error_has_none) {
+  const auto told = [](const char* kind, const char* at) {
+    write_bytes(
+        "s.toml",
+        std::string("topple = 1\nfloor = {}\nwall = [{ name = \"w\", at = [-0.34, 0], normal = [1, 0, 0] }]\n") +
+            "[[furniture]]\nkind = \"chest\"\n[[furniture]]\nkind = \"" + kind + "\"\nat = " + at +
+            "\n[[fixing]]\nkind = \"L-bracket\"\nbody = \"refrigerator\"\nto = \"w\"\n");
+    return topple({"check", "s.toml"}).err;
+  };
+  for (const std::string& err : {told("refrigerator", "[0.1, 0, 0]"), told("refrigeratr", "[2, 0, 0]")}) {
+    EXPECT_EQ(std::count(err.begin(), err.end(), '\n'), 1) << err;
+    EXPECT_EQ(err.find("there is no body"), std::string::npos) << err;
+  }
+}
+
 TEST_F(BadSceneTest, a_shake_that_rows_do_not_follow_is_warned_of) {
   const Ended ended = topple({"check", "wardrobe", "--set", "shake.1.frequency=\"30 Hz\""});
   EXPECT_NE(ended.err.find("shake 1 of 30 Hz is too fast for rows at 100 Hz"), std::string::npos)

@@ -88,6 +88,8 @@ TEST(Words, what_turns_about_an_edge_has_not_slid) {
     now.x = centre.x(), now.y = centre.y(), now.z = centre.z();
     now.qw = turn.w(), now.qx = turn.x(), now.qy = turn.y(), now.qz = turn.z();
     now.tilt = angle;
+    EXPECT_TRUE(body_in_words(model, scene.setup.parameters.gravity, row, 0).starts_with("free: tilt 30.0°"));
+    row.step = 1;  // before, everything is at rest, on whatever it will fall from
     now.slide = (edge - body.base_centre).norm() * (1 - std::cos(angle));
     EXPECT_GT(now.slide, 0.02);
     EXPECT_EQ(body_in_words(model, scene.setup.parameters.gravity, row, 0),
