@@ -111,11 +111,11 @@ struct Parameters {
   Vec3 gravity{0, 0, -k_standard_gravity};  ///< m/s^2
   Integrator integrator = Integrator::generalized_alpha;
   bool automatic_integrator = false;  ///< "auto": generalized_alpha as long as no other is chosen
-  double spectral_radius = 0.8;     ///< of generalized-alpha at infinity, 0..1
-  double beta = 0.25, gamma = 0.5;  ///< of newmark
-  double time_step = 1e-3;          ///< s, fixed step
-  bool adaptive = false;            ///< the step follows `tolerance` instead (step_control.h)
-  double tolerance = 1e-3;          ///< of the adaptive step, relative to the speed (step_control.h)
+  double spectral_radius = 0.8;       ///< of generalized-alpha at infinity, 0..1
+  double beta = 0.25, gamma = 0.5;    ///< of newmark
+  double time_step = 1e-3;            ///< s, fixed step
+  bool adaptive = false;              ///< the step follows `tolerance` instead (step_control.h)
+  double tolerance = 1e-3;            ///< of the adaptive step, relative to the speed (step_control.h)
   /// Explicit substeps of rigid and elastic bodies (reduced_body.h) and of frames, and the steps of adaptive
   /// central differences, are this many times shorter than stability asks for.
   double substep_refinement = 1;

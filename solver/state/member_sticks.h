@@ -34,7 +34,8 @@ class MemberSticks {
   bool keeps_ = false;
 };
 
-/// Each takes its own. `of_body`: per body of the model; null: its pairs are those of the bodies that touch it.
+/// Each takes its own. `of_body`: per body of the model; null: its pairs are those of the bodies that touch
+/// it.
 void take_sticks(const Model& model, std::span<MemberSticks* const> of_body, const State& state);
 /// And gives them back.
 void give_sticks(const Model& model, std::span<MemberSticks* const> of_body, State& state);

@@ -159,7 +159,8 @@ TEST_F(BadSceneTest, what_refers_to_a_piece_that_has_an_error_has_none) {
   const auto told = [](const char* kind, const char* at) {
     write_bytes(
         "s.toml",
-        std::string("topple = 1\nfloor = {}\nwall = [{ name = \"w\", at = [-0.34, 0], normal = [1, 0, 0] }]\n") +
+        std::string(
+            "topple = 1\nfloor = {}\nwall = [{ name = \"w\", at = [-0.3, 0], normal = [1, 0, 0] }]\n") +
             "[[furniture]]\nkind = \"chest\"\n[[furniture]]\nkind = \"" + kind + "\"\nat = " + at +
             "\n[[fixing]]\nkind = \"L-bracket\"\nbody = \"refrigerator\"\nto = \"w\"\n");
     return topple({"check", "s.toml"}).err;
