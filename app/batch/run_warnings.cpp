@@ -157,7 +157,7 @@ void warn_of_breaks(const Run& run, Warnings& list) {
   if (most == broken.end() || most->second < 2) return;
   list.push_back(fmt::format(
       "{} sections broke in load step {}: when one breaks the path leaps to the next equilibrium, and what "
-      "there is in "
+      "lies "
       "between is not seen; more run.load_steps, or run.control by a displacement, may stop there",
       most->second, most->first));
 }

@@ -72,14 +72,15 @@ void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::st
 
 /// What stands on a body that stoppers lean starts level, within it.
 void warn_of_wedges(const Setup& setup, std::vector<std::string>& list) {
+  if (setup.wedges.empty()) return;
   const std::vector<Bearer> bearers = bearers_of(setup.model, setup.starts);
   for (const Wedge& wedge : setup.wedges)
     for (std::size_t b = 0; wedge.in_place() && b < bearers.size(); ++b)
       if (bearers[b].body == wedge.body)
         list.push_back(fmt::format(
             "\"{}\" stands on \"{}\", which \"{}\" lifts by {:.2g} mm on one side: it starts level, partly "
-            "within it, "
-            "and what holds the two together is strained by that; `at` so much higher lets it down on it",
+            "within it, and what holds the two together is strained by that; `at` so much higher lets it "
+            "down on it",
             setup.model.bodies[b].name, setup.model.bodies[static_cast<std::size_t>(wedge.body)].name,
             wedge.name, 1e3 * wedge.lift));
 }

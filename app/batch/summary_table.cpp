@@ -66,19 +66,20 @@ std::string static_head(const ordered_json& s) {
       s["scene"].get<std::string>(), s["status"].get<std::string>(), s["wall_s"].get<double>(),
       s["steps"].get<long>(), s["rejected_steps"].get<long>(), s["newton_iterations"].get<long>());
   const ordered_json& steps = s["static"];
+  constexpr double k_nothing = 1e-9;  // of the greatest factor
+  const auto size = [](const ordered_json& step) {
+    return step["factor"].is_number() ? std::abs(step["factor"].get<double>()) : 0.;
+  };
   double greatest = 0;
-  for (const ordered_json& step : steps)
-    if (step["factor"].is_number()) greatest = std::max(greatest, std::abs(step["factor"].get<double>()));
-  constexpr double k_nothing = 1e-9;
-  const auto carries_nothing = [&](const ordered_json& step) {
-    return step["converged"].get<bool>() && step["stable"] == false &&
-           std::abs(step["factor"].get<double>()) < k_nothing * greatest;
+  for (const ordered_json& step : steps) greatest = std::max(greatest, size(step));
+  const auto is_nothing = [&](const ordered_json& step) {
+    return step["converged"].get<bool>() && size(step) < k_nothing * greatest;
   };
   for (std::size_t k = 0; k < steps.size();) {
     const ordered_json& first = steps[k];
     std::size_t end = k + 1;  // of those of which the same is to be said
-    if (carries_nothing(first)) {
-      while (end < steps.size() && std::abs(steps[end]["factor"].get<double>()) < k_nothing * greatest) ++end;
+    if (is_nothing(first) && first["stable"] == false) {
+      while (end < steps.size() && is_nothing(steps[end])) ++end;
       out += fmt::format("load factor 0 in {} step{}: a mechanism, which carries nothing\n", end - k,
                          end - k > 1 ? "s" : "");
       k = end;
@@ -89,17 +90,14 @@ std::string static_head(const ordered_json& s) {
                                [&](const char* key) { return steps[end][key] == first[key]; }))
       ++end;
     const auto factor = [&](const ordered_json& step) {
-      const bool nothing =
-          step["factor"].is_number() && std::abs(step["factor"].get<double>()) < k_nothing * greatest;
-      return nothing ? std::string("0") : text(step["factor"], "{:.6g}");
+      return is_nothing(step) ? std::string("0") : text(step["factor"], "{:.6g}");
     };
     out += "load factor " + factor(first);
     if (end > k + 1) {
-      double most = 0;
+      std::size_t most = k;
       for (std::size_t i = k; i < end; ++i)
-        if (std::abs(steps[i]["factor"].get<double>()) > std::abs(most))
-          most = steps[i]["factor"].get<double>();
-      const std::string passed = fmt::format("{:.6g}", most), last = factor(steps[end - 1]);
+        if (size(steps[i]) > size(steps[most])) most = i;
+      const std::string passed = factor(steps[most]), last = factor(steps[end - 1]);
       out += fmt::format(" to {} in {} steps{}", last, end - k,
                          passed != last && passed != factor(first) ? ", greatest " + passed : "");
     }

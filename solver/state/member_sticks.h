@@ -16,7 +16,7 @@ class MemberSticks {
  public:
   /// Fills MemberPair::stick. `pairs` are in the order of their elements, as in every function here.
   void load(const State& state, std::span<MemberPair> pairs) const;
-  /// What touches leaves its springs; the others become zero.
+  /// Between take_sticks and give_sticks: what touches leaves its springs; the others become zero.
   void store(std::span<const MemberTouch> touches, std::span<const MemberPair> pairs);
   /// Those of MemberPair::stick of the pairs `which`, in order, at `places`, bits per pair of `pairs`; the
   /// others become zero.

@@ -367,6 +367,27 @@ TEST_F(ExportPageTest, who_is_hit_is_told_as_the_run_found_it) {
       nlohmann::ordered_json::parse(R"([{"place": 0, "body": 0, "time_s": )" + hit["time_s"].dump() + "}]"));
 }
 
+// Between rows 43 ms apart, where no summary has the time of the step.
+TEST_F(ExportPageTest, without_a_summary_a_body_overturns_between_two_rows) {
+  const io::Scene scene = io::parse_scene(
+      "topple = 1\nfloor = {}\nrun = { duration = 3, output_rate = 23 }\n"
+      "shake = [{ type = \"sine\", amplitude = \"500 gal\", frequency = 1 }]\n"
+      "[[block]]\nsize = [0.3, 0.6, 1.5]\nmass = 60\n",
+      "block.toml");
+  topple::Run run(scene.setup);
+  io::Observer observer;
+  io::Recorder recorder({"block.h5", true}, scene.name, scene.text, scene.setup.model);
+  recorder.write(observer.observe(run));
+  while (!run.over()) run.advance(), recorder.write(observer.observe(run));
+  recorder.finish("stopped", "");
+  const std::optional<double> overturned = run.outcome().bodies()[0].beyond_since;
+  ASSERT_TRUE(overturned);
+  ASSERT_GT(std::abs(23 * *overturned - std::round(23 * *overturned)), 0.1);
+  ASSERT_EQ(topple({"export", "block.h5", "--page", "page.html"}).code, 0);
+  EXPECT_NEAR(data_of(bytes_of("page.html"))["bodies"][0]["overturn_time_s"].get<double>(), *overturned,
+              1e-3);  // of 43 ms
+}
+
 TEST_F(ExportPageTest, a_scene_is_changed_as_by_run) {
   const std::vector<std::string> sets = {"--set", "run.duration=0.2", "--set", "cabinet.free.mass=99 kg"};
   const auto with_sets = [&](std::vector<std::string> arguments) {
