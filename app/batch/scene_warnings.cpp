@@ -16,7 +16,6 @@
 #include "solver/contact/proximity.h"
 #include "solver/io/edit/edit_text.h"
 #include "solver/reduced/tipping.h"
-#include "solver/run/bearer.h"
 #include "solver/study/common/alone.h"
 #include "solver/study/common/standing.h"
 
@@ -68,21 +67,6 @@ void warn_of_anchors(const Setup& setup, const State& start, std::vector<std::st
                     "gives way before the anchor does; at a corner it is stiffer",
                     anchor.name, body.name, model.members[at.member].name));
   }
-}
-
-/// What stands on a body that stoppers lean starts level, within it.
-void warn_of_wedges(const Setup& setup, std::vector<std::string>& list) {
-  if (setup.wedges.empty()) return;
-  const std::vector<Bearer> bearers = bearers_of(setup.model, setup.starts);
-  for (const Wedge& wedge : setup.wedges)
-    for (std::size_t b = 0; wedge.in_place() && b < bearers.size(); ++b)
-      if (bearers[b].body == wedge.body)
-        list.push_back(fmt::format(
-            "\"{}\" stands on \"{}\", which \"{}\" lifts by {:.2g} mm on one side: it starts level, partly "
-            "within it, and what holds the two together is strained by that; `at` so much higher lets it "
-            "down on it",
-            setup.model.bodies[b].name, setup.model.bodies[static_cast<std::size_t>(wedge.body)].name,
-            wedge.name, 1e3 * wedge.lift));
 }
 
 /// Where a wall pushes a body away as the run begins.
@@ -240,7 +224,6 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   if (setup.run.analysis != Analysis::dynamic) return list;
   const State start = start_state(setup.model, setup.starts);
   warn_of_anchors(setup, start, list);
-  warn_of_wedges(setup, list);
   warn_of_walls(setup, start, list);
   warn_of_falls(setup, start, list);
   warn_of_overlaps(setup, start, list);

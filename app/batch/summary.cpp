@@ -157,6 +157,18 @@ ordered_json safe_closing_speed(const Run& run) {
   return number(least / 2 / p.time_step);
 }
 
+ordered_json contact(const Model& model, const ContactLaw& c) {
+  if (!can_touch(model)) return nullptr;
+  const ContactLawTraits& law = traits(c);
+  return {{"law", law.word},
+          {"alpha_N", number(c.alpha)},
+          {"q", number(c.q)},
+          {"friction", number(c.friction)},
+          {"restitution", law.has_restitution ? number(c.restitution) : nullptr},
+          {"normal_speed_m_s", law.has_restitution ? number(c.normal_speed) : nullptr},
+          {"member_share", model.bodies.size() > 1 ? number(c.member_share) : ordered_json(nullptr)}};
+}
+
 /// Of the balances found: a limit load, where the path goes beyond it.
 ordered_json peak_load_factor(const Run& run) {
   std::optional<double> peak;
@@ -228,15 +240,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
   out["safe_closing_speed_m_s"] = safe_closing_speed(run);
-  const ContactLawTraits& law = traits(p.contact);
-  out["contact"] = {{"law", law.word},
-                    {"alpha_N", number(p.contact.alpha)},
-                    {"q", number(p.contact.q)},
-                    {"friction", number(p.contact.friction)},
-                    {"restitution", law.has_restitution ? number(p.contact.restitution) : nullptr},
-                    {"normal_speed_m_s", law.has_restitution ? number(p.contact.normal_speed) : nullptr},
-                    {"member_share", run.setup().model.bodies.size() > 1 ? number(p.contact.member_share)
-                                                                         : ordered_json(nullptr)}};
+  out["contact"] = contact(run.setup().model, p.contact);
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();

@@ -166,11 +166,14 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
+  // of a block the contacts that a hard floor stands for are in it, up to a landing
+  const char* const until = change["model"] == "planar" ? " until it lands" : " until it lifts";
   const std::string bounds =
       may_strike
-          ? " until it lifts; leaning and striking something, from which a frame springs back, enlarge that"
-      : body["impacts"].get<int>() > 0             ? " until it lifts; leaning and landing enlarge that"
-      : !body["first_beyond_critical_s"].is_null() ? " until it lifts; leaning enlarges that"
+          ? fmt::format("{}; leaning and striking something, from which a frame springs back, enlarge that",
+                        until)
+      : body["impacts"].get<int>() > 0 ? fmt::format("{}; leaning and landing enlarge that", until)
+      : !body["first_beyond_critical_s"].is_null() ? fmt::format("{}; leaning enlarges that", until)
                                                    : "";
   const double error = estimate.get<double>();
   const std::string off =
@@ -214,6 +217,19 @@ std::string model_lines(const ordered_json& bodies) {
   return out;
 }
 
+std::string contact_line(const ordered_json& s) {
+  const ordered_json& contact = s["contact"];
+  if (contact.is_null()) return "";
+  const ordered_json &share = contact["member_share"], &restitution = contact["restitution"];
+  return fmt::format(
+      "contact: {}, alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}{}{}\n", contact["law"].get<std::string>(),
+      contact["alpha_N"].get<double>() / k_standard_gravity,
+      share.is_null() || share == 1 ? ""
+                                    : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
+      contact["q"].get<double>(), contact["friction"].get<double>(), own_frictions(s),
+      restitution.is_null() ? "" : fmt::format(", restitution {:.6g}", restitution.get<double>()));
+}
+
 std::string dynamic_head(const ordered_json& s) {
   std::string out = fmt::format("{}: {} after {:.6g} s", s["scene"].get<std::string>(),
                                 s["status"].get<std::string>(), s["simulated_s"].get<double>());
@@ -221,20 +237,13 @@ std::string dynamic_head(const ordered_json& s) {
   if (real_time > 0)
     out += fmt::format(" ({:.2f} s of wall time, {:.{}g} times real time)", s["wall_s"].get<double>(),
                        real_time, real_time < 10 ? 2 : 4);
-  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected, {} iterations\n", integrators(s),
+  out += fmt::format("\n{}, {} {} s: {} steps, {} rejected", integrators(s),
                      s["adaptive"].get<bool>() ? "mean step" : "step", text(s["time_step_s"], "{:g}"),
-                     s["steps"].get<long>(), s["rejected_steps"].get<long>(),
-                     s["newton_iterations"].get<long>());
-  const ordered_json& share = s["contact"]["member_share"];
-  out += fmt::format(
-      "contact: {}, alpha {:.6g} kgf{}, q {:.6g}, friction {:.6g}{}{}\n",
-      s["contact"]["law"].get<std::string>(), s["contact"]["alpha_N"].get<double>() / k_standard_gravity,
-      share.is_null() || share == 1 ? ""
-                                    : fmt::format(" ({:.3g} of it between members)", share.get<double>()),
-      s["contact"]["q"].get<double>(), s["contact"]["friction"].get<double>(), own_frictions(s),
-      s["contact"]["restitution"].is_null()
-          ? ""
-          : fmt::format(", restitution {:.6g}", s["contact"]["restitution"].get<double>()));
+                     s["steps"].get<long>(), s["rejected_steps"].get<long>());
+  // as where no body is a frame
+  if (const auto iterations = s["newton_iterations"].get<long>(); iterations > 0)
+    out += fmt::format(", {} iterations", iterations);
+  out += "\n" + contact_line(s);
   return out + energy_in_words(s["energy"]) + "\n";
 }
 

@@ -50,6 +50,7 @@ struct Side {
   ordered_json summary;  ///< null: of a recording whose run was interrupted
   int exit_code = k_done;
   std::vector<LoggedEdit> edits;  ///< while it ran
+  ordered_json branch;            ///< of a recording that has several: the newest, which is compared
   std::unique_ptr<TemporaryFile> temporary;
   std::unique_ptr<io::Recording> recording;  ///< of a scene only when pictures are wanted
 };
@@ -65,7 +66,10 @@ void take_edits(Side& side, const History& history, std::int32_t branch) {
     const io::SavedScene saved =
         io::edited_scene(side.scene, parameters_at(side.scene.setup, history, branch, 0));
     side.started = io::parse_scene(saved.text, side.scene.name, {}, io::files_of(side.scene));
-    std::erase_if(side.edits, std::not_fn(is_later));
+    std::erase_if(side.edits, [&](const LoggedEdit& edit) {
+      return !is_later(edit) && traits(edit.edit.key).of != Edit::Of::node &&
+             std::ranges::find(saved.given_up, io::edit_key(edit.edit)) == saved.given_up.end();
+    });
   } catch (const io::InputError&) {  // they are told as made while it ran
   }
 }
@@ -81,7 +85,9 @@ Side open_side(const std::string& source) {
   side.recording = std::make_unique<io::Recording>(open_foreign_recording(source));
   side.scene = io::recorded_scene(*side.recording);
   io::check_edits(side.recording->history(), side.scene.setup);
-  take_edits(side, side.recording->history(), side.recording->newest_branch());
+  const History& history = side.recording->history();
+  take_edits(side, history, side.recording->newest_branch());
+  if (history.branches.size() > 1) side.branch = side.recording->newest_branch();
   if (!side.recording->summary_json().empty())
     side.summary = ordered_json::parse(side.recording->summary_json());
   return side;
@@ -210,6 +216,7 @@ ordered_json greatest_load(const Side& side) {
 
 ordered_json side_json(const Side& side) {
   return {{"source", side.source},
+          {"branch", side.branch},
           {"scene", side.scene.name},
           {"title", side.scene.title},
           {"status", side.summary.is_null() ? ordered_json("interrupted") : side.summary["status"]},
@@ -295,15 +302,22 @@ std::string hit_by(const ordered_json& way) {
 }
 
 std::string tables(const ordered_json& result) {
-  const std::string a = result["a"]["source"], b = result["b"]["source"];
+  const auto called = [](const char* letter, const ordered_json& side) {
+    return fmt::format("{}: {}{}", letter, side["source"].get<std::string>(),
+                       side["branch"].is_null() ? "" : fmt::format(", branch {}", side["branch"].get<int>()));
+  };
+  const std::string a = called("A", result["a"]), b = called("B", result["b"]);
   Table parameters, outcomes;
-  parameters.row("parameter", "A: " + a, "B: " + b);
+  parameters.row("parameter", a, b);
   const auto value = [](const ordered_json& v) {
     return v.is_null() ? std::string("-") : v.get<std::string>();
   };
   for (const ordered_json& p : result["parameters"]) parameters.row(p["key"], value(p["a"]), value(p["b"]));
-  outcomes.row("outcome", "A: " + a, "B: " + b);
+  outcomes.row("outcome", a, b);
   outcomes.row("status", result["a"]["status"], result["b"]["status"]);
+  if (result["a"]["simulated_s"] != result["b"]["simulated_s"])
+    outcomes.row("simulated, s", text(result["a"], "simulated_s", 1, 3),
+                 text(result["b"], "simulated_s", 1, 3));
   if (result["a"]["counted_from_s"] != result["b"]["counted_from_s"])
     outcomes.row("peaks, times and anchors counted from, s", text(result["a"], "counted_from_s", 1, 3),
                  text(result["b"], "counted_from_s", 1, 3));

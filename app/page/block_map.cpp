@@ -10,7 +10,6 @@ namespace {
 
 constexpr double k_longest = 10;  // s
 constexpr double k_level = 1e-9;  // horizontal part of a unit vector that counts as none
-constexpr planar::Obstacle k_ignored[] = {planar::Obstacle::between};
 
 /// Value `k` of `count` from ends[0] to ends[1].
 double on_axis(const double (&ends)[2], int k, int count) {
@@ -35,8 +34,7 @@ std::optional<Phrase> BlockMap::find_obstacle(const Setup& setup) {
   if (along.norm() < k_level) return page_words::k_map_vertical;
   parameters.anchors.assign(setup.model.anchors.size(), false);
   planar::Obstacle obstacle = planar::Obstacle::none;
-  block_ =
-      planar::planar_case_along(setup.model, parameters, along.normalized(), body_, &obstacle, k_ignored);
+  block_ = planar::planar_case_along(setup.model, parameters, along.normalized(), body_, &obstacle);
   if (block_) return std::nullopt;
   return Phrase{traits(obstacle).phrase, row_of(page_words::k_obstacles, obstacle).japanese};
 }

@@ -92,4 +92,9 @@ double floor_peak(const std::vector<io::FrameRow>& rows, const std::vector<Shake
   return peak;
 }
 
+double floor_scale(const std::vector<io::FrameRow>& rows, const std::vector<Shake>& shakes) {
+  constexpr double k_least = 0.1;  // m/s^2
+  return std::max(floor_peak(rows, shakes), k_least);
+}
+
 }  // namespace topple::app

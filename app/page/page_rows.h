@@ -33,5 +33,7 @@ std::vector<io::FrameRow> unpack_rows(const Model& model, std::string_view bytes
 double floor_along(const io::FrameRow& row, const std::vector<Shake>& shakes);
 /// The greatest while the rows last: between them too, where they show the motion of the shakes as these are.
 double floor_peak(const std::vector<io::FrameRow>& rows, const std::vector<Shake>& shakes);
+/// Up to which its curve is drawn: the peak, or what makes a flat line of a floor that hardly moves, m/s^2.
+double floor_scale(const std::vector<io::FrameRow>& rows, const std::vector<Shake>& shakes);
 
 }  // namespace topple::app

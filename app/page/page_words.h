@@ -42,7 +42,6 @@ inline constexpr JapaneseObstacle k_obstacles[] = {
     {planar::Obstacle::stands, "初めに床の上に立っていない"},
     {planar::Obstacle::symmetry, "動く面について対称でない"},
     {planar::Obstacle::edge, "底面の端が点である"},
-    {planar::Obstacle::between, "底面の両縁の間に接触点がある"},
     {planar::Obstacle::early, "転倒する前に他の接触点が床に当たる"},
     {planar::Obstacle::near, "倒れる範囲に壁または他の家具がある"},
     {planar::Obstacle::jump, "床の上下方向の速度が不連続である"},

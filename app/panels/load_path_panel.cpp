@@ -101,8 +101,9 @@ PathChart draw_path_grid(ImDrawList& list, const Box& box, const PathAxis& x, co
     const float at = chart.at(value, y.low).x;
     list.AddLine({at, chart.top}, {at, chart.bottom}, theme().faint);
     const std::string text = tick_text(value, along);
-    add_text(list, std::min(at - text_width(text) / 2, box.left + box.width - text_width(text) - 2),
-             chart.bottom + 2, theme().text, text);
+    const float width = text_width(text);  // the first one would lie on the lowest of the other axis
+    add_text(list, std::clamp(at - width / 2, chart.left, box.left + box.width - width - 2), chart.bottom + 2,
+             theme().text, text);
   }
   list.AddRect({chart.left, chart.top}, {chart.right, chart.bottom}, theme().axis);
   return chart;

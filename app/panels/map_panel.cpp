@@ -99,6 +99,18 @@ void add_mark(ImDrawList& list, ImVec2 at, float size, Verdict verdict) {
   }
 }
 
+/// What runs within the cell say: some overturn, some do not. Nothing where its neighbours agree with it.
+std::optional<study::CellShare> doubt(const OverturnFound& found, int i, int j) {
+  const auto place = static_cast<std::size_t>(j * found.plan->x.count() + i);
+  if (place >= found.shares.size() || !found.shares[place]) return std::nullopt;
+  const study::CellShare& share = *found.shares[place];
+  return share.overturned > 0 && share.overturned < share.runs ? std::optional(share) : std::nullopt;
+}
+
+void add_doubt(ImDrawList& list, ImVec2 at, float size) {
+  list.AddCircle(at, 0.4f * size, theme().text, 16, std::max(1.f, 0.1f * size));
+}
+
 void draw_cells(ImDrawList& list, const LogChart& chart, const OverturnFound& found) {
   const std::vector<double> x = found.plan->x.edges(), y = found.plan->y.edges();
   for (std::size_t j = 0; j + 1 < y.size(); ++j)
@@ -107,8 +119,10 @@ void draw_cells(ImDrawList& list, const LogChart& chart, const OverturnFound& fo
       if (verdict == Verdict::not_computed) continue;
       const ImVec2 low = chart.at(x[i], y[j]), high = chart.at(x[i + 1], y[j + 1]);
       list.AddRectFilled({low.x, high.y}, {high.x, low.y}, theme().verdict[static_cast<int>(verdict)].fill);
-      add_mark(list, {(low.x + high.x) / 2, (low.y + high.y) / 2}, std::min(high.x - low.x, low.y - high.y),
-               verdict);
+      const ImVec2 middle{(low.x + high.x) / 2, (low.y + high.y) / 2};
+      const float size = std::min(high.x - low.x, low.y - high.y);
+      add_mark(list, middle, size, verdict);
+      if (doubt(found, static_cast<int>(i), static_cast<int>(j))) add_doubt(list, middle, size);
     }
 }
 
@@ -133,7 +147,7 @@ std::string outcome_in_words(const OverturnFound& found, int i, int j) {
   const auto place = static_cast<std::size_t>(j * found.plan->x.count() + i);
   const bool near_an_edge = place < found.shares.size() && found.shares[place];
   const study::CellShare share = near_an_edge ? *found.shares[place] : study::CellShare();
-  if (share.overturned > 0 && share.overturned < share.runs) {
+  if (doubt(found, i, j)) {
     const study::Interval within = study::wilson(share.overturned, share.runs);
     return say(k_map_unsure, share.overturned, share.runs, 100 * share.probability(), 100 * within.low,
                100 * within.high);
@@ -296,6 +310,10 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
     list.AddRect({at.x - half, at.y - half}, {at.x + half, at.y + half}, theme().axis);
     add_mark(list, at, line, verdict);
   }
+  bool doubts = false;
+  for (int k = 0; k < plan.x.count() * plan.y.count(); ++k)
+    doubts = doubts || doubt(*found, k % plan.x.count(), k / plan.x.count());
+  if (doubts) add_doubt(list, key.entry(say(k_map_doubt)), line);
   if (!curves.empty()) key.lines(curves);
   add_present(list, key.entry(say(k_present)));
   key.end();

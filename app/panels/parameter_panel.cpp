@@ -390,11 +390,6 @@ bool draw_heading(Edit::Of of, int index, const Parameters& parameters, const Mo
   }
 }
 
-/// Else contact parameters change nothing.
-bool can_touch(const Model& model) {
-  return !model.planes.empty() || model.bodies.size() > 1;
-}
-
 bool draw_precision_button() {
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 6.2f * ImGui::GetFontSize());
   const bool pressed = ImGui::Button((say(k_precision) + "##precision").c_str());

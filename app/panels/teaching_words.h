@@ -108,6 +108,7 @@ inline constexpr Phrase k_map_unsure{
     "({3:.0f} to {4:.0f} %)",
     "不確か（周囲で結果が分かれる）：このマス内の {1} 件中 {0} 件で転倒、確率 {2:.0f} %（{3:.0f}～{4:.0f} "
     "%）"};
+inline constexpr Phrase k_map_doubt{"uncertain within", "マス内で不確か"};
 inline constexpr Phrase k_map_all_fall{"; neighbours disagree, all {0} runs within this cell overturn",
                                        "。周囲で結果が分かれるが、このマス内の {0} 件はすべて転倒"};
 inline constexpr Phrase k_map_all_stand{"; neighbours disagree, none of {0} runs within this cell overturns",

@@ -48,25 +48,24 @@ std::vector<double> greatest_tilt_shares(const Player& player) {
   return most;
 }
 
-/// Those that tilt most over the run, of what they can, in their own order; all of a few.
+/// Those that tilt most over the run, of what they can, in their own order; one of each colour.
 std::vector<std::size_t> coloured_bodies(const std::vector<double>& greatest_shares) {
   std::vector<std::pair<double, std::size_t>> shares;
   for (std::size_t b = 0; b < greatest_shares.size(); ++b) shares.emplace_back(-greatest_shares[b], b);
   std::ranges::sort(shares);
-  if (shares.size() > k_coloured) shares.resize(k_coloured);
   std::vector<std::size_t> coloured;
-  coloured.reserve(shares.size());
-  for (const auto& [share, b] : shares) coloured.push_back(b);
+  for (const auto& [share, b] : shares)
+    if (coloured.size() < k_coloured &&
+        std::ranges::find(coloured, body_colour(b), body_colour) == coloured.end())
+      coloured.push_back(b);
   std::ranges::sort(coloured);
   return coloured;
 }
 
+/// That of their paths in the scene.
 ImU32 line_colour(const std::vector<std::size_t>& coloured, std::size_t body) {
-  const auto at = std::ranges::find(coloured, body);
-  if (at == coloured.end()) return theme().other;
-  // Where all are coloured, in the colours that their paths have in the scene.
-  const auto& [red, green, blue] =
-      body_colour(coloured.back() < coloured.size() ? body : static_cast<std::size_t>(at - coloured.begin()));
+  if (std::ranges::find(coloured, body) == coloured.end()) return theme().other;
+  const auto& [red, green, blue] = body_colour(body);
   const auto clear = [](int part) { return window_is_dark() ? part + (255 - part) / 4 : part; };
   return IM_COL32(clear(red), clear(green), clear(blue), 255);
 }

@@ -128,8 +128,11 @@ void choose_branch(Player& player) {
   flow(width);
   ImGui::SetNextItemWidth(width);
   if (ImGui::BeginCombo("##branch", name(player.shown_branch()).c_str())) {
-    for (const Branch& branch : branches)
-      if (list_entry(name(branch.id), branch.id == player.shown_branch())) player.show_branch(branch.id);
+    for (const Branch& branch : branches) {
+      const std::string entry = branch.fork_step == 0 ? say(k_branch_from_start, name(branch.id))
+                                                      : say(k_branch_out_of, name(branch.id), branch.parent);
+      if (list_entry(entry, branch.id == player.shown_branch())) player.show_branch(branch.id);
+    }
     ImGui::EndCombo();
   }
   tooltip(k_branch_about);

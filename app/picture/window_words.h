@@ -111,6 +111,10 @@ inline constexpr Phrase k_minutes{"{0} min", "{0} 分"};
 inline constexpr Phrase k_seconds{"{0} s", "{0} 秒"};
 inline constexpr Phrase k_paused{"Paused. Space goes on; parameters can be changed now and while it runs.",
                                  "一時停止中。Space で再開。パラメーターは計算中も変更できます。"};
+inline constexpr Phrase k_restarted{
+    "Back at the start, with the sliders as they are. Space runs branch {0}; the run so far is kept as "
+    "branch {1}.",
+    "現在のパラメーターで先頭に戻りました。Space で分岐 {0} を計算。それまでの計算は分岐 {1} に。"};
 inline constexpr Phrase k_recording{"Recording", "記録を表示中"};
 inline constexpr Phrase k_looking_back{"Looking back", "過去を表示中"};
 inline constexpr Phrase k_played{", played", "（再生中）"};
@@ -138,8 +142,10 @@ inline constexpr Phrase k_one_on{"One instant on ( . )", "1コマ進む（ . ）
 inline constexpr Phrase k_to_end{"To the newest instant (End)", "最新の時刻へ（End）"};
 inline constexpr Phrase k_replay_restart{"To the start (R)", "先頭へ（R）"};
 inline constexpr Phrase k_restart{
-    "Back to the start, with the sliders as they are; what is running runs again (R)",
-    "現在のパラメーターで先頭に戻る。計算中なら最初から計算し直す（R）"};
+    "Back to the start in a new branch, with the sliders as they are;\n"
+    "what is running runs again. The run so far is kept as its branch (R)",
+    "現在のパラメーターで先頭に戻り、新しい分岐を開始。計算中なら最初から計算し直す。\n"
+    "それまでの計算は元の分岐に残る（R）"};
 inline constexpr Phrase k_slower{"Half the speed ( [ )", "速度を半分に（ [ ）"};
 inline constexpr Phrase k_faster{"Twice the speed ( ] )", "速度を2倍に（ ] ）"};
 inline constexpr Phrase k_load_speed{"Load paths per second, asked for", "1秒あたりの載荷過程の数（指定値）"};
@@ -149,7 +155,10 @@ inline constexpr Phrase k_continue_about{"A new branch begins at the instant sho
                                          "表示中の時刻から新しい分岐を開始（C）"};
 inline constexpr Phrase k_branch{"branch {0}", "分岐 {0}"};
 inline constexpr Phrase k_branch_live{"branch {0} (live)", "分岐 {0}（計算中）"};
-inline constexpr Phrase k_branch_about{"Which future to look at", "表示する分岐"};
+inline constexpr Phrase k_branch_from_start{"{0}: from the start", "{0}：先頭から"};
+inline constexpr Phrase k_branch_out_of{"{0}: goes on from branch {1}", "{0}：分岐 {1} から続く"};
+inline constexpr Phrase k_branch_about{"Which branch to look at; the runs that were left are kept here",
+                                       "表示する分岐。離れた計算もここに残る"};
 inline constexpr Phrase k_undo{"Undo", "元に戻す"};
 inline constexpr Phrase k_undo_about{"Takes the last change back, from now on (Ctrl+Z)",
                                      "直前の変更を現時刻から取り消す（Ctrl+Z）"};
@@ -428,9 +437,8 @@ inline constexpr Phrase k_key_step{"one instant back, on", "1コマ戻る、進�
 inline constexpr Phrase k_key_speed{"half, twice the speed", "速度を半分、2倍に"};
 inline constexpr Phrase k_key_start{"to the start", "先頭へ"};
 inline constexpr Phrase k_key_end{"to the newest instant", "最新の時刻へ"};
-inline constexpr Phrase k_key_restart{
-    "back to the start with the sliders as they are; what is running runs again",
-    "現在のパラメーターで先頭に戻る。計算中なら最初から計算し直す"};
+inline constexpr Phrase k_key_restart{"back to the start in a new branch, with the sliders as they are",
+                                      "現在のパラメーターで先頭に戻り、新しい分岐を開始"};
 inline constexpr Phrase k_key_continue{"continue from here in a new branch", "ここから新しい分岐で続行"};
 inline constexpr Phrase k_key_undo{"take a change of a parameter back", "パラメーターの変更を取り消す"};
 inline constexpr Phrase k_key_redo{"make it again", "取り消した変更をやり直す"};

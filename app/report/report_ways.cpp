@@ -15,6 +15,7 @@ using nlohmann::ordered_json;
 constexpr double k_width = 720, k_most_height = 620;  // px
 constexpr double k_bar = 22;                          // px, of the scale
 constexpr double k_margin = 0.35;                     // m, around all that is drawn
+constexpr double k_far_wall = 10;                     // m, from the middle of what stands there: not drawn
 constexpr double k_moved = 0.02;                      // m, from which on the start is drawn as well
 
 constexpr const char* k_fallen = "fill=\"#c9926b\" stroke=\"#6b2f10\" stroke-width=\"1.5\"";
@@ -23,6 +24,7 @@ constexpr const char* k_start = "fill=\"none\" stroke=\"#777\" stroke-width=\"0.
 constexpr const char* k_way_before = "fill=\"none\" stroke=\"#a9bdd3\" stroke-width=\"5\"";
 constexpr const char* k_way = "fill=\"none\" stroke=\"#12355b\" stroke-width=\"1.8\"";
 constexpr const char* k_wall = "stroke=\"#222\" stroke-width=\"5\"";
+constexpr double k_thick = 5;  // px, of it
 constexpr const char* k_door = "stroke=\"#222\" stroke-width=\"1\"";
 constexpr const char* k_hit = "fill=\"none\" stroke=\"#b0471c\" stroke-width=\"2.5\"";
 constexpr const char* k_person =
@@ -106,26 +108,30 @@ View view_of(const Plan& plan) {
   for (const Room::Place& place : plan.room.places) view.take(place.at);
   for (const Room::Door& door : plan.room.doors)
     for (const int end : {0, 1}) view.take(plan.room.jamb(door, end));
+  const Vec2 middle = (view.least + view.most) / 2;
+  for (const Room::Wall& wall : plan.room.walls)
+    if (const double before = Room::before(wall, middle); before < k_far_wall)
+      view.take(middle - before * wall.normal);
   view.close();
   return view;
 }
 
-/// Of a wall, what is in view, between where other walls end it.
+/// Of a wall, what is in view, as far as to the backs of the walls that end it.
 std::string wall(const View& view, const Room& room, const Room::Wall& of, const Vec2& from, const Vec2& to) {
   const Vec2 along = to - from;
   double begin = 0, end = 1;
   const auto keep = [&](double at_from, double rate) {  // where at_from + rate t >= 0
-    if (rate == 0) return;
+    if (rate == 0 && at_from < 0) end = 0;
     if (rate > 0) begin = std::max(begin, -at_from / rate);
     if (rate < 0) end = std::min(end, -at_from / rate);
   };
   for (const Room::Wall& other : room.walls)
-    if (&other != &of) keep(Room::before(other, from), other.normal.dot(along));
+    if (&other != &of) keep(Room::before(other, from) + k_thick / view.scale, other.normal.dot(along));
   for (int k = 0; k < 2; ++k) {
     keep(from[k] - view.least[k], along[k]);
     keep(view.most[k] - from[k], -along[k]);
   }
-  const Vec2 back = -2.5 / view.scale * of.normal;
+  const Vec2 back = -k_thick / 2 / view.scale * of.normal;
   return begin < end ? line(view, from + begin * along + back, from + end * along + back, k_wall) : "";
 }
 
@@ -135,7 +141,7 @@ std::string walls_and_doors(const View& view, const Room& room) {
     for (const Convex& face : faces(room, w)) out += wall(view, room, room.walls[w], face[0], face[1]);
   for (const Room::Door& door : room.doors) {
     const Vec2 a = room.jamb(door, 0), b = room.jamb(door, 1);
-    const Vec2 back = -5 / view.scale * room.walls[static_cast<std::size_t>(door.wall)].normal;
+    const Vec2 back = -k_thick / view.scale * room.walls[static_cast<std::size_t>(door.wall)].normal;
     out += line(view, a, b, k_door) + line(view, a + back, b + back, k_door);
     out += words_at(view, (a + b) / 2 + 3.5 * back, 4, door.name);
   }

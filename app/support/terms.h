@@ -23,6 +23,11 @@ inline bool is_static(const Setup& setup) {
   return setup.run.analysis == Analysis::statics;
 }
 
+/// Else parameters of contact change nothing.
+inline bool can_touch(const Model& model) {
+  return !model.planes.empty() || model.bodies.size() > 1;
+}
+
 /// A share in words: "83 %", "0.9 %"; ">99 %" of what is less than the whole but would be rounded to it.
 inline std::string percent_of(double part, double whole) {
   const double percent = 100 * part / whole;

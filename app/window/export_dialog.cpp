@@ -23,8 +23,9 @@ namespace ww = window_words;
 
 constexpr int k_most_rate = 240;
 
-/// The options of `topple render` that draw as the viewer does.
-std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
+/// The options of `topple render` that draw as the viewer does, all that it shows. aspect: width / height of
+/// the picture.
+std::vector<std::string> as_seen(const Player& player, const Viewer& viewer, float aspect) {
   const PictureSettings& s = viewer.settings();
   const Model& model = player.scene().setup.model;
   const render::Orbit& orbit = viewer.orbit();
@@ -35,7 +36,7 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer) {
   std::vector<std::string> words{
       "--camera",
       fmt::format("{},{},{},{},{},{}{}", orbit.sight.azimuth * k_degrees, orbit.sight.elevation * k_degrees,
-                  orbit.distance, target.x(), target.y(), target.z(),
+                  orbit.distance_for(aspect, viewer.aspect()), target.x(), target.y(), target.z(),
                   body ? ",follow:" + model.bodies[*body].name : ""),
       "--colour",
       traits(s.colour).word,
@@ -143,7 +144,8 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
            "--speed", fmt::format("{}", speed)});
     else
       add({"--at", fmt::format("{}", std::min(player.time(), player.way().back()->time))});
-    for (const std::string& word : as_seen(player, viewer)) words.push_back(word);
+    const float aspect = static_cast<float>(size[0]) / static_cast<float>(size[1]);
+    for (const std::string& word : as_seen(player, viewer, aspect)) words.push_back(word);
     exports_.add(words, result, ExportJob::Makes::file);
     close();
   } catch (const std::runtime_error& error) {

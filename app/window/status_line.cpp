@@ -1,5 +1,6 @@
 #include "app/window/status_line.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/picture/window_words.h"
@@ -20,6 +21,17 @@ std::string running_in_words(const Player& player) {
   const double seconds = std::ceil((player.length() - player.time()) / achieved);
   const std::string left = seconds < 120 ? say(k_seconds, seconds) : say(k_minutes, std::ceil(seconds / 60));
   return say(k_running_slow, asked, achieved, left);
+}
+
+bool is_restarted(const Player& player) {
+  const std::vector<Branch>& branches = player.history().branches;
+  const auto shown = std::ranges::find(branches, player.shown_branch(), &Branch::id);
+  return player.ghost_branch() && shown != branches.end() && shown->fork_step == 0 && player.row()->step == 0;
+}
+
+std::string paused_in_words(const Player& player) {
+  return is_restarted(player) ? say(k_restarted, player.shown_branch(), *player.ghost_branch())
+                              : say(k_paused);
 }
 
 }  // namespace
@@ -49,7 +61,9 @@ std::string status_in_words(const Player& player) {
   }
   if (player.way().empty()) return status.message.empty() ? say(k_no_instants) : status.message;
   if (player.at_head())
-    return !player.playing() ? say(k_paused) : loads ? say(k_running_loads) : running_in_words(player);
+    return !player.playing() ? paused_in_words(player)
+           : loads           ? say(k_running_loads)
+                             : running_in_words(player);
   std::string words = say(player.replay() ? k_recording : k_looking_back);
   if (player.playing()) words += loads ? say(k_played) : say(k_played_at, player.speed());
   if (!status.message.empty() && status.kind != LiveStatus::Kind::over)

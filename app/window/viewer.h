@@ -97,6 +97,8 @@ class Viewer {
   ShellRequest asked() const { return asked_; }
   /// Regions in Dear ImGui's coordinates.
   const Box& scene_box() const { return scene_; }
+  /// Width / height of the scene.
+  float aspect() const { return scene_.width / scene_.height; }
   const Box& timeline_box() const { return timeline_; }
   const Box& path_box() const { return path_; }
   const TeachingState& teaching() const { return teaching_; }
@@ -170,7 +172,6 @@ class Viewer {
   void draw_key_table();
   void draw_panels();
   GhostCurves ghost_curves() const;
-  float aspect() const { return scene_.width / scene_.height; }
 
   Player& player_;
   render::Stage& stage_;

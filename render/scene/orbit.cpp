@@ -116,6 +116,12 @@ void Orbit::keep(std::span<const Vector3f> points, float aspect, float share) {
   limit(*this);
 }
 
+float Orbit::distance_for(float aspect, float seen) const {
+  const float narrower = std::max(seen / aspect, 1.0f);
+  const float behind = std::max(sight_axes(sight).row(2).dot(target - middle) + size / 2, 0.0f);
+  return narrower * distance + (narrower - 1) * behind;  // what is behind the target nears the edges
+}
+
 Camera Orbit::camera(float aspect) const {
   const Matrix3f axes = sight_axes(sight);
   const Vector3f back = axes.row(2);

@@ -44,6 +44,10 @@ struct Orbit {
   /// aspect: as of camera().
   void keep(std::span<const Eigen::Vector3f> points, float aspect, float share);
 
+  /// From which a region of `aspect` shows all that is seen from here in one of `seen`, of what is within the
+  /// bounds; aspects as of camera().
+  float distance_for(float aspect, float seen) const;
+
   /// aspect: width / height of the region, > 0.
   Camera camera(float aspect) const;
 

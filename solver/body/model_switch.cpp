@@ -185,7 +185,7 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   if (automatic && s.level == ModelLevel::elastic && near_yield_[b] &&
       is_falling(model, parameters, state, b))
     return {ModelLevel::frame, LevelReason::neighbour};
-  if (watched_[b]) {
+  if (watched_[b] && traits(s.level).has_stresses) {
     if (yields_[b]) return {ModelLevel::frame, LevelReason::yield};
     ReducedBody& body = parts.reduced(state, b);
     if (body.yield_bound(s) > k_near_yield) {
@@ -219,6 +219,7 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   }
   s.level = choice.level;
   s.reason = choice.reason;
+  if (!traits(s.level).has_stresses) on.parts.clear_sections(b);
   s.calm_since = -1;
   s.error_estimate = error_estimate(model, on.parameters, state, on.parts, b);
   changed_[b] = true;
@@ -276,6 +277,7 @@ void ModelSwitch::start(const Model& model, const Parameters& parameters, State&
       s = reduce(model, state, b, choice.level);
     s.level = choice.level;
     s.reason = choice.reason;
+    if (!traits(s.level).has_stresses) parts.clear_sections(b);
     begin_block({model, parameters, now, now, state, parts}, b);
   }
   parts.arrange(state);
@@ -287,13 +289,14 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
                          const StepInputs& end, State& state, Parts& parts) {
   const Switching on{model, parameters, now, end, state, parts};
   find_base(model, parameters);
-  find_near(parts.islands(state));
   parts.arrange(state);
+  const std::vector<Island>& islands = parts.islands();
+  find_near(islands);
   parts.find_forces(now, state, watched_);
   choice_.clear();
   const int count = static_cast<int>(model.bodies.size());
   for (int b = 0; b < count; ++b) choice_.push_back(choose(on, b));
-  choose_islands(parts.islands(state), parameters, state);
+  choose_islands(islands, parameters, state);
   const bool any = !ranges::equal(choice_, state.bodies, {}, &LevelChoice::level, &BodyState::level);
   if (any) {
     // as the newest step left it: parts may be arranged otherwise by now, with pairs that came near
@@ -313,8 +316,8 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
       change(on, choice_[b], b);
     other_frames = other_frames || was_frame != (s.level == ModelLevel::frame);
   }
-  parts.arrange(state);
   if (any) {
+    parts.arrange(state);
     parts.balance(parameters, now, changed_, state);
     ranges::fill(changed_, false);
     state.energy.model_switch += parts.energy(now, state).sum();

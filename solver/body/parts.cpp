@@ -127,6 +127,11 @@ void Parts::arrange(const State& state) {
   moves_nodes_ = !systems.empty();
 }
 
+void Parts::clear_sections(int body) {
+  std::fill_n(sections.begin() + model_.bodies[body].first_element, model_.bodies[body].element_count,
+              SectionForces{Vec3::Zero(), Vec3::Zero()});
+}
+
 BodyEnergy Parts::balance(const Parameters& parameters, const StepInputs& now,
                           const std::vector<char>& marked, State& state) {
   BodyEnergy held;
@@ -161,14 +166,16 @@ double Parts::time_limit(const Parameters& parameters, const State& state) {
   return std::max(limit, 2 * k_least_step);
 }
 
-std::optional<ExplicitLimit> Parts::explicit_limit(const Parameters& parameters, const State& state) {
+std::optional<ExplicitLimit> Parts::explicit_limit(const Parameters& parameters, const State& state,
+                                                   double damped) {
   const ContactLaw law = stiffest_law(parameters);
   std::optional<ExplicitLimit> least;
   for (int b = 0; b < static_cast<int>(model_.bodies.size()); ++b) {
     BodySystem* const system = state.bodies[b].level == ModelLevel::frame ? islands_.alone(b) : nullptr;
     if (!system) continue;
     int node = -1;
-    const double step = topple::explicit_limit(*system, &law, damping_time(model_, parameters, b), &node);
+    const double step =
+        topple::explicit_limit(*system, &law, damped * damping_time(model_, parameters, b), &node);
     if (!least || step < least->step) least = {step, b, node, system->element_at(node)};
   }
   return least;
@@ -178,6 +185,11 @@ ReducedBody& Parts::reduced(const State& state, int body) {
   if (!reduced_[body]) reduced_[body] = std::make_unique<ReducedBody>(model_, body);
   reduced_[body]->remember(state.anchors);
   return *reduced_[body];
+}
+
+void Parts::forget_parameters() {
+  for (const auto& body : planar_)
+    if (body) body->forget_parameters();
 }
 
 PlanarBody& Parts::planar(int body) {

@@ -40,8 +40,9 @@ class Parts {
   const std::vector<char>& with_frames() const { return with_frames_; }
   /// Whether a step moves nodes: there are frames.
   bool moves_nodes() const { return moves_nodes_; }
-  /// Of the candidate pairs of `state`.
+  /// Of the candidate pairs of `state`; those that the parts are arranged for.
   const std::vector<Island>& islands(const State& state);
+  const std::vector<Island>& islands() const { return divided_; }
 
   /// Part::balance of those that are marked; of all.
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,
@@ -59,16 +60,22 @@ class Parts {
   double explicit_reach(const Parameters& parameters);
   /// Least over the frames of `state`, each alone with all contacts closed, with the stiffer of the two laws
   /// between which an edit changes; none without frames.
-  std::optional<ExplicitLimit> explicit_limit(const Parameters& parameters, const State& state);
+  /// `damped`: by as much of their damping.
+  std::optional<ExplicitLimit> explicit_limit(const Parameters& parameters, const State& state,
+                                              double damped = 1);
 
   /// One body as a rigid or elastic one, with the anchors of `state`; as a frame.
   ReducedBody& reduced(const State& state, int body);
   BodySystem& alone(int body) { return *islands_.alone(body); }
   PlanarBody& planar(int body);
+  /// Of the parameters there are others from here on.
+  void forget_parameters();
 
-  /// Per element of the model, as the newest step or balance left them; of rigid and elastic bodies as
-  /// Part::list_forces found them last.
+  /// Per element of the model, as the newest step or balance left them; of elastic bodies as
+  /// Part::list_forces found them last; zero of bodies without stresses.
   std::vector<SectionForces> sections;
+  /// Of a body that has no stresses from here on.
+  void clear_sections(int body);
 
  private:
   std::vector<Island> without_mixed(const Island& island) const;

@@ -27,7 +27,6 @@ constexpr double k_tolerance = 1e-16;
 constexpr double k_growth = 30;         // hard_floor_error()
 constexpr double k_softer = 1 - 1e-6;   // alpha over that of a hard floor, which may be rounded
 constexpr double k_noise = 1e-12;       // rad, m/s, rad/s: what a best fit makes of nothing
-constexpr double k_same_place = 1e-7;   // m, as in planar_case.cpp
 constexpr double k_longest = 0.01;      // s, step of an adaptive run while it rocks or flies,
 constexpr double k_shortest = 1e-5;     // s, but for one that ends
 constexpr double k_after_event = 1e-7;  // s after an event
@@ -59,10 +58,14 @@ Event advance_to(const PlanarCase& of, const Parameters& parameters, double unti
       continue;
     }
     const Event event = advance(of.block, floor, of.controls, std::min(until, jump), motion, step);
-    if (sum && event != Event::stalled) add_exchange(of.block, before, step, motion, *sum);
+    if (sum && event != Event::stalled) add_exchange(of.block, before, step, motion, event, *sum);
     if (event == Event::overturn || event == Event::stalled) return event;
   }
   return Event::none;
+}
+
+bool is_flat(const planar::State& motion) {
+  return motion.mode == planar::Mode::rest || motion.mode == planar::Mode::slide;
 }
 
 /// Numbers of the law but for friction.
@@ -103,20 +106,9 @@ Beginning beginning(const Model& model, const Parameters& parameters, const Stat
   else if (!asked && hard_floor_error(model, body, *out.block, parameters.contact) +
                              rigid_error(model, parameters, body) >
                          parameters.accuracy)
-    out.why = "its contacts are too soft for a hard floor";
+    out.why = "its contacts are too soft for a hard floor within run.accuracy";
   if (!out.why.empty()) out.block.reset();
   return out;
-}
-
-std::vector<int> points_on(const Model& model, int index, const PlanarCase& block, Side side) {
-  const Body& body = model.bodies[index];
-  const double edge = block.block.edge(side);
-  std::vector<int> points;
-  for (const int p : body.base_points) {
-    const Vec3 arm = model.node_position[model.contact_points[p].node] - body.centre_of_gravity;
-    if (std::abs(arm.dot(block.along) - edge) <= k_same_place) points.push_back(p);
-  }
-  return points;
 }
 
 /// m, by which a body sinks on an edge whose points bear `force`, N, together.
@@ -132,15 +124,16 @@ double sinking(const ContactLaw& law, double force, const std::vector<int>& poin
 double hard_floor_error(const Model& model, int body, const PlanarCase& found, const ContactLaw& law) {
   const planar::Block& block = found.block;
   const std::optional<double> hard = rigid_alpha(model, law, Vec3(0, 0, -block.gravity));
+  const std::vector<planar::BaseLine> base = planar::base_lines(model, body, found.along);
   double greatest = 0;
   for (const Side side : {Side::left, Side::right}) {
     const double b = side == Side::right ? block.right : block.left;
     if (!(b > 0)) return std::numeric_limits<double>::infinity();
-    const double d =
-        sinking(law, block.mass * block.gravity, points_on(model, body, found, side), model, found.floor);
+    const std::vector<int>& edge = side == Side::right ? base.back().points : base.front().points;
+    const double d = sinking(law, block.mass * block.gravity, edge, model, found.floor);
     greatest = std::max(greatest, k_growth * d * block.height / (2 * b * b));
   }
-  return hard && law.alpha >= k_softer * *hard ? 0 : greatest;
+  return base.size() < 3 && hard && law.alpha >= k_softer * *hard ? 0 : greatest;
 }
 
 std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,
@@ -163,22 +156,21 @@ std::optional<BlockState> PlanarBody::begin(const Parameters& parameters, const 
 }
 
 const PlanarCase* PlanarBody::block(const Parameters& parameters, const Vec3& along) {
-  if (!seen_ || case_.along != along || !(*seen_ == parameters)) {
-    seen_ = parameters;
+  if (!known_ || case_.along != along) {
+    known_ = true;
     limited_.reset();
     const auto found = planar::planar_case_along(model_, parameters, along, body_, &obstacle_);
     case_ = found ? *found : planar::block_along(model_, parameters, along, body_);
     case_.along = along;
     case_.controls.tolerance = k_tolerance;
-    right_ = points_on(model_, body_, case_, Side::right);
-    left_ = points_on(model_, body_, case_, Side::left);
+    base_ = planar::base_lines(model_, body_, along);
     error_ = topple::hard_floor_error(model_, body_, case_, parameters.contact);
   }
   return obstacle_ == planar::Obstacle::none ? &case_ : nullptr;
 }
 
 planar::Situation PlanarBody::situation(const StepInputs& now) const {
-  return {case_.block, now.floor.dot(case_.along), case_.block.gravity + now.floor.z()};
+  return {case_.block, now.floor.dot(case_.along), case_.block.gravity + now.floor.z(), step_.leg.known};
 }
 
 bool PlanarBody::near_wall(const planar::State& motion, double h, double push) const {
@@ -200,6 +192,47 @@ bool PlanarBody::near_wall(const planar::State& motion, double h, double push) c
     }
   }
   return false;
+}
+
+bool PlanarBody::spreads(const planar::State& motion) const {
+  return base_.size() > 2 && is_flat(motion);
+}
+
+// What lies between the edges of the base bears where it is flat: with depths on a line, which has the
+// resultant and moment of the forces on the edges alone.
+void PlanarBody::divide(const ContactLaw& law, const planar::FloorForces& forces,
+                        const planar::State& motion) {
+  const auto count = [&](std::size_t k) { return static_cast<double>(base_[k].points.size()); };
+  const std::size_t last = base_.size() - 1;
+  shares_.assign(base_.size(), 0);
+  shares_.front() = 1 - forces.right, shares_.back() = forces.right;
+  if (!spreads(motion)) return;
+  // the depths of the edges are (1, 1 + 2 w) for w from -1 to 0 and (1 - 2 w, 1) from there to 1
+  const double wide = case_.block.left + case_.block.right;
+  double sum = 0;
+  const auto off = [&](double w) {  // the resultant, from where it is to be, over the width
+    sunk_ = {std::min(1., 1 - 2 * w), std::min(1., 1 + 2 * w)};
+    double moment = 0;
+    sum = 0;
+    for (std::size_t k = 0; k <= last; ++k) {
+      const double there = (base_[k].place + case_.block.left) / wide,
+                   depth = std::max(0., (1 - there) * sunk_[0] + there * sunk_[1]);
+      shares_[k] = count(k) * (law.q == 1 ? depth : elementary::pow(depth, law.q));
+      sum += shares_[k];
+      moment += there * shares_[k];
+    }
+    return moment / sum - forces.right;
+  };
+  constexpr int k_halvings = 50;
+  double low = -1, high = 1;
+  for (int k = 0; k < k_halvings; ++k) {
+    const double middle = (low + high) / 2;
+    (off(middle) < 0 ? low : high) = middle;
+  }
+  off((low + high) / 2);
+  for (double& share : shares_) share /= sum;
+  const double scale = law.q == 1 ? 1 / sum : elementary::pow(sum, -1 / law.q);
+  for (double& sunk : sunk_) sunk *= scale;
 }
 
 std::optional<LevelReason> PlanarBody::plan(const Parameters& parameters, const StepInputs& start,
@@ -261,8 +294,9 @@ BodyEnergy PlanarBody::balance(const Parameters& parameters, const StepInputs& n
   BodyState& s = state.bodies[body_];
   const PlanarCase* of = block(parameters, from.along);
   if (!of) return energy(state);
-  const planar::Pose pose = planar::pose(*of, from.motion);
-  const planar::Motion v = planar::centre_of_gravity(of->block, from.motion);
+  const planar::Turned turned{from.motion.tilt, step_.leg.known.at(from.motion.tilt)};
+  const planar::Pose pose = planar::pose(*of, from.motion, turned);
+  const planar::Motion v = planar::centre_of_gravity(of->block, from.motion, turned);
   const planar::FloorForces f = planar::floor_forces(situation(now), from.motion);
   const double mass = of->block.mass;
   s.position = pose.centre;
@@ -273,7 +307,7 @@ BodyEnergy PlanarBody::balance(const Parameters& parameters, const StepInputs& n
   s.moment.setZero();
   for (const Side side : {Side::left, Side::right}) {
     const double share = side == Side::right ? f.right : 1 - f.right;
-    const planar::Lever r = planar::lever(of->block, side, from.motion.tilt);
+    const planar::Lever r = planar::lever(of->block, side, turned.of);
     s.moment += share * mass * (r.z * f.tangential - r.x * f.normal) * of->across;
   }
   return energy(state);
@@ -307,8 +341,7 @@ double PlanarBody::time_limit(const Parameters& parameters, const State& state) 
   const planar::ShakenPlane plane{parameters.shakes, of->along};
   const planar::Floor floor = planar::shaken(plane);
   planar::State motion = s.motion;
-  const bool flat = motion.mode == planar::Mode::rest || motion.mode == planar::Mode::slide;
-  const double longest = flat ? k_longest_step : k_longest, until = state.time + longest;
+  const double longest = is_flat(motion) ? k_longest_step : k_longest, until = state.time + longest;
   while (motion.time < until)
     if (advance(of->block, floor, of->controls, until, motion, step_) != Event::none)
       return limit_ = std::clamp(motion.time + k_after_event - state.time, k_shortest, longest);
@@ -321,10 +354,10 @@ void PlanarBody::list_contacts(const Parameters& parameters, const StepInputs& n
   const PlanarCase* of = block(parameters, s.along);
   if (!of) return;
   const planar::FloorForces f = planar::floor_forces(situation(now), s.motion);
-  for (const Side side : {Side::left, Side::right}) {
-    const std::vector<int>& points = side == Side::right ? right_ : left_;
-    const double share =
-        (side == Side::right ? f.right : 1 - f.right) * of->block.mass / static_cast<double>(points.size());
+  divide(now.law, f, s.motion);
+  for (std::size_t k = 0; k < base_.size(); ++k) {
+    const std::vector<int>& points = base_[k].points;
+    const double share = shares_[k] * of->block.mass / static_cast<double>(points.size());
     if (!(share * f.normal > 0)) continue;
     const Vec3 force = share * (f.tangential * of->along + f.normal * Vec3::UnitZ());
     for (const int point : points) forces.push_back({point, case_.floor, 0, share * f.normal, force});
@@ -337,12 +370,10 @@ void PlanarBody::sink(const Parameters& parameters, const StepInputs& now, State
   BodyState& s = state.bodies[body_];
   const planar::Block& block = case_.block;
   const planar::FloorForces f = planar::floor_forces(situation(now), from.motion);
-  const bool flat = from.motion.mode == planar::Mode::rest || from.motion.mode == planar::Mode::slide;
-  double down[2];
-  for (const Side side : {Side::left, Side::right}) {
-    const std::vector<int>& points = side == Side::right ? right_ : left_;
-    const double share = (side == Side::right ? f.right : 1 - f.right) * block.mass;
-    down[side == Side::right] = sinking(now.law, share * f.normal, points, model_, case_.floor);
+  divide(now.law, f, from.motion);
+  for (std::size_t k = 0; k < base_.size(); ++k) {
+    const std::vector<int>& points = base_[k].points;
+    const double share = shares_[k] * block.mass;
     if (!(share * f.normal > 0) || !traits(now.law).sticks) continue;
     for (const int point : points) {
       const double L = contact_length(model_.contact_points[point], model_.planes[case_.floor]);
@@ -351,7 +382,18 @@ void PlanarBody::sink(const Parameters& parameters, const StepInputs& now, State
           -share * f.tangential / stiffness * case_.along;
     }
   }
-  if (!flat) {
+  const auto sunk = [&](std::size_t end) {
+    if (spreads(from.motion)) return sunk_[end];
+    const double share = end == 0 ? shares_.front() : shares_.back();
+    const std::vector<int>& points = end == 0 ? base_.front().points : base_.back().points;
+    return elementary::pow(share / static_cast<double>(points.size()), 1 / now.law.q);
+  };
+  const double L = contact_length(model_.contact_points[base_.front().points.front()],
+                                  model_.planes[case_.floor]),
+               alone =
+                   L * elementary::pow(std::max(0., block.mass * f.normal) / now.law.alpha, 1 / now.law.q),
+               down[] = {alone * sunk(0), alone * sunk(1)};
+  if (!is_flat(from.motion)) {
     s.position.z() -= std::max(down[0], down[1]);
     return;
   }

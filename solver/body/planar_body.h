@@ -18,7 +18,8 @@
 namespace topple {
 
 /// Estimated error of a hard floor in place of contacts of this law, as a share of the critical angle: 0
-/// where they are as stiff as those of scenes that name no alpha (contact_default.h), which stand for one;
+/// where they are as stiff as those of scenes that name no alpha (contact_default.h), which stand for one,
+/// and the body stands on its edges alone: how points between them share a landing goes as 1/sqrt(alpha);
 /// else
 ///   30 d h/2b^2,  d = L (W/(n alpha))^(1/q), the greater of both edges
 /// d: m, to which the body sinks on an edge alone; n: contact points on it. A side lifts when the body leans
@@ -32,10 +33,14 @@ double hard_floor_error(const Model& model, int body, const planar::PlanarCase& 
 std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,
                                 int body, bool asked);
 
-/// One body: its block under the parameters seen last, and where its next step leads.
+/// One body: its block under the parameters seen first since they were forgotten, and where its next step
+/// leads.
 class PlanarBody {
  public:
   PlanarBody(const Model& model, int body) : model_(model), body_(body) {}
+
+  /// The next ones that are given are others.
+  void forget_parameters() { known_ = false; }
 
   /// The block of a body that moves so, or none; `asked`: walls, other bodies and the law's alpha do not
   /// matter.
@@ -72,14 +77,21 @@ class PlanarBody {
   const planar::PlanarCase* block(const Parameters& parameters, const Vec3& along);
   bool near_wall(const planar::State& motion, double h, double push) const;
   planar::Situation situation(const StepInputs& now) const;
+  bool spreads(const planar::State& motion) const;
+  void divide(const ContactLaw& law, const planar::FloorForces& forces, const planar::State& motion);
 
   const Model& model_;
   const int body_;
-  std::optional<Parameters> seen_;                      // for them hold:
+  bool known_ = false;                                  // the parameters; for them hold:
   planar::PlanarCase case_;                             //   the block,
   planar::Obstacle obstacle_ = planar::Obstacle::none;  // what stands in its way,
-  std::vector<int> right_, left_;                       //   contact points of the model on the edges
+  std::vector<planar::BaseLine> base_;                  //   contact points, from left to right,
   double error_ = 0;                                    //   hard_floor_error()
+  // As divide() left them: shares of the normal force, per line of base_; where it spreads() over lines
+  // between the edges, by how much the left and the right one are sunk, over what one point would be by all
+  // of it, negative where it is up.
+  std::vector<double> shares_;
+  std::array<double, 2> sunk_;
   std::optional<std::array<double, 4>> limited_;  // motion that time_limit() was asked for last, under them,
   double limit_ = 0;                              // s, and its answer; asked twice a step
   planar::Step step_;

@@ -80,7 +80,7 @@ void ReducedPart::find_forces(const StepInputs& now, const State& state, bool) {
 void ReducedPart::list_forces(const Parameters&, const StepInputs& now, const State& state, Forces& forces) {
   find_forces(now, state, true);
   for (const auto& [index, body] : bodies_) {
-    body->section_forces(state.bodies[index], sections_);
+    if (traits(state.bodies[index].level).has_stresses) body->section_forces(state.bodies[index], sections_);
     body->list_contacts(forces.contacts);
   }
 }

@@ -16,7 +16,7 @@ std::vector<PulledNode> pulls_at(const Parameters& parameters, double t) {
 StepInputs::StepInputs(const Parameters& parameters, double t)
     : time(t),
       law(contact_law(parameters, t)),
-      floor(floor_acceleration(parameters.shakes, t)),
+      floor(acceleration_from(parameters.shakes, t)),
       pulls(pulls_at(parameters, t)) {}
 
 StepInputs::StepInputs(const Parameters& parameters, double t, const StepInputs& before)

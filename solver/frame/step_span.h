@@ -20,8 +20,9 @@ struct StepInputs {
   PreparedLaw law;
   Vec3 floor;                     ///< m/s^2, acceleration
   std::vector<PulledNode> pulls;  ///< one per Parameters::pulls
+  /// Where the floor's acceleration jumps, with what follows.
   StepInputs(const Parameters& parameters, double t);
-  /// The same, for an instant after `before` with the same parameters: cheaper.
+  /// Of an instant after `before` with the same parameters, which is no jump: cheaper.
   StepInputs(const Parameters& parameters, double t, const StepInputs& before);
 };
 

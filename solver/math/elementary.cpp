@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-14";
+  return "topple-15";
 }
 
 }  // namespace topple

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "solver/math/elementary.h"
+#include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 
 namespace topple {
@@ -274,6 +275,33 @@ Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1)
              shake.direction.cwiseProduct(Vec3(passed, passed, 1));
     }
   return sum;
+}
+
+namespace {
+
+constexpr double k_jump_slack = 1e-9;  // s
+
+}  // namespace
+
+bool acceleration_jumps(const std::vector<Shake>& shakes, double t) {
+  constexpr double k_none = 1e-5;  // m/s^2
+  const auto is_near = [&](double at) { return std::abs(at - t) <= k_jump_slack; };
+  const auto changes = [&](const Shake& shake) {
+    const ShakeTraits& kind = traits(shake.kind);
+    return is_near(shake.start) ||
+           ((kind.has_duration || kind.has_record || shake.cycles > 0) && is_near(ground_end(shake)));
+  };
+  return ranges::any_of(shakes, changes) &&
+         (floor_acceleration(shakes, t + 2 * k_jump_slack) - floor_acceleration(shakes, t - 2 * k_jump_slack))
+                 .norm() > k_none;
+}
+
+Vec3 acceleration_until(const std::vector<Shake>& shakes, double t) {
+  return floor_acceleration(shakes, acceleration_jumps(shakes, t) ? t - 2 * k_jump_slack : t);
+}
+
+Vec3 acceleration_from(const std::vector<Shake>& shakes, double t) {
+  return floor_acceleration(shakes, acceleration_jumps(shakes, t) ? t + 2 * k_jump_slack : t);
 }
 
 void advance_floor(Vec3& displacement, Vec3& velocity, const Vec3& a0, const Vec3& a1, double h) {

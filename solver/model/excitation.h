@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "solver/math/types.h"
 #include "solver/model/building.h"
@@ -96,6 +97,12 @@ double greatest_acceleration(const std::vector<Shake>& shakes);
 /// Velocity jump of the floor of the shakes that start in [t0, t1): -A/(2 pi f) along the direction for each
 /// with `initial_velocity = jump`, m/s; in a building the share that passes its modes by.
 Vec3 floor_velocity_jump(const std::vector<Shake>& shakes, double t0, double t1);
+
+/// Whether the floor's acceleration jumps at t, s, but for what rounding makes of times: at the start or end
+/// of a shake, as of a rectangle. Then what it is until t, and from t on, m/s^2.
+bool acceleration_jumps(const std::vector<Shake>& shakes, double t);
+Vec3 acceleration_until(const std::vector<Shake>& shakes, double t);
+Vec3 acceleration_from(const std::vector<Shake>& shakes, double t);
 
 /// Corner frequency of the causal high-pass that turns the acceleration into the displayed displacement, Hz.
 inline constexpr double k_floor_corner = 0.05;

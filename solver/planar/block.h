@@ -20,9 +20,12 @@ struct Block {
   /// Factor on the rate that a block without slip keeps at an impact of its base by Housner's condition
   /// (transition.h); 0: comes to rest on it.
   double restitution = 1;
+  /// Further factors, of landings on either edge (landing.h).
+  double left_landing = 1, right_landing = 1;
   double gravity = 9.80665;  ///< m/s^2
 
   double edge(Side side) const { return side == Side::right ? right : -left; }
+  double landing(Side side) const { return side == Side::right ? right_landing : left_landing; }
   double inertia_over_mass() const { return inertia / mass; }
 };
 

@@ -20,10 +20,10 @@ struct Exchanged {
   double input = 0, gravity = 0, friction = 0, impact = 0;
 };
 /// Adds the newest step, from `before` to `after` its event. Works are integrals of products of its series.
-void add_exchange(const Block& block, const State& before, const Step& step, const State& after,
+void add_exchange(const Block& block, const State& before, const Step& step, const State& after, Event event,
                   Exchanged& sum);
 
 /// J/kg, of motion.
-double kinetic_energy(const Block& block, const State& state);
+double kinetic_energy(const Block& block, const State& state, const Turned& known = {});
 
 }  // namespace topple::planar

@@ -119,7 +119,7 @@ bool begin(const Block& block, const Floor& floor, const Controls& controls, dou
   leg.block = &block, leg.controls = &controls;
   leg.floor_end = floor.series(floor.floor, state.time, leg.horizontal, leg.vertical);
   leg.vertical[0] += block.gravity;
-  leg.known = {state.tilt, leg.known.at(state.tilt)};
+  leg.known = leg.known_at_start = {state.tilt, leg.known.at(state.tilt)};
   leg.start = state.undecided ? decided(leg.situation(), state) : state;
   leg.end = std::min(until, leg.floor_end);
   if (leg.start.mode != Mode::rest) return true;

@@ -24,7 +24,7 @@ struct Leg {
   double end, floor_end;                ///< s, of the step at most, and of the series of the floor
   Series<double> horizontal, vertical;  ///< of the floor, m/s^2; the latter with gravity
   int without_progress = 0;             ///< events in a row that came at once
-  Turned known;                         ///< of the start's tilt; from finish() on of the end's
+  Turned known, known_at_start;         ///< of the start's tilt; the first from finish() on of the end's
 
   Situation situation() const { return {*block, horizontal[0], vertical[0], known}; }  ///< at the start
 };

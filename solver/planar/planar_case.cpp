@@ -157,6 +157,9 @@ void set_block(Candidate& c) {
   block.static_friction = law.friction + law.excess();
   block.restitution = c.body.restitution;
   block.gravity = -c.parameters.gravity.z();
+  const std::vector<BaseLine> base = base_lines(c.model, c.index, found.along);
+  block.left_landing = landing_factor(block, Side::left, base, law.q);
+  block.right_landing = landing_factor(block, Side::right, base, law.q);
   found.bounces = law.restitution > 0;
   found.floor = static_cast<int>(c.floor - c.model.planes.data());
   found.origin = {centre.x(), centre.y(), c.floor->point.z() + c.width / 2};
@@ -199,13 +202,6 @@ bool ends_in_a_point(Candidate& c) {
         }))
       return true;
   return false;
-}
-
-bool has_points_between(Candidate& c) {
-  return std::any_of(c.body.base_points.begin(), c.body.base_points.end(), [&](int p) {
-    const double u = c.place(c.base_point(p)).x();
-    return u > -c.found.block.left + k_same_place && u < c.found.block.right - k_same_place;
-  });
 }
 
 /// Tilt at which a point meets the floor, by its place from the edge and how much it is thicker there:
@@ -276,7 +272,6 @@ constexpr Row k_obstacles[] = {
     {{Obstacle::stands, "stands", "it does not begin on the floor"}, starts_elsewhere},
     {{Obstacle::symmetry, "symmetry", "it is not symmetric about the plane of its motion"}, is_not_symmetric},
     {{Obstacle::edge, "edge", "its base ends in a point"}, ends_in_a_point},
-    {{Obstacle::between, "between", "its base has contact points between its edges"}, has_points_between},
     {{Obstacle::early, "early", "another of its contact points meets the floor before it overturns"},
      meets_early},
     {{Obstacle::near, "near", "a wall or body is within its fall"}, has_neighbours},
@@ -284,14 +279,9 @@ constexpr Row k_obstacles[] = {
     {{Obstacle::none, "none", ""}, nullptr},
 };
 
-std::optional<PlanarCase> looked_at(Candidate& candidate, Obstacle* obstacle,
-                                    std::span<const Obstacle> ignored = {}) {
-  const auto stops = [&](const Row& row) {
-    // what is ignored is asked as well: later ones rely on what it finds
-    return !row.is_there ||
-           (row.is_there(candidate) && std::find(ignored.begin(), ignored.end(), row.kind) == ignored.end());
-  };
-  const auto found = std::find_if(std::begin(k_obstacles), std::end(k_obstacles), stops);
+std::optional<PlanarCase> looked_at(Candidate& candidate, Obstacle* obstacle) {
+  const auto found = std::find_if(std::begin(k_obstacles), std::end(k_obstacles),
+                                  [&](const Row& row) { return !row.is_there || row.is_there(candidate); });
   if (obstacle) *obstacle = found->kind;
   return found->is_there ? std::nullopt : std::optional(candidate.found);
 }
@@ -300,6 +290,26 @@ std::optional<PlanarCase> looked_at(Candidate& candidate, Obstacle* obstacle,
 
 const ObstacleTraits& traits(Obstacle obstacle) {
   return row_of(k_obstacles, obstacle);
+}
+
+std::vector<BaseLine> base_lines(const Model& model, int index, const Vec3& along) {
+  const Body& body = model.bodies[static_cast<std::size_t>(index)];
+  std::vector<BaseLine> lines;
+  for (const int p : body.base_points) {
+    const int node = model.contact_points[static_cast<std::size_t>(p)].node;
+    const double place =
+        (model.node_position[static_cast<std::size_t>(node)] - body.centre_of_gravity).dot(along);
+    const auto same = std::find_if(lines.begin(), lines.end(), [&](const BaseLine& line) {
+      return std::abs(line.place - place) <= k_same_place;
+    });
+    if (same == lines.end())
+      lines.push_back({place, {p}});
+    else
+      same->points.push_back(p);
+  }
+  std::sort(lines.begin(), lines.end(),
+            [](const BaseLine& a, const BaseLine& b) { return a.place < b.place; });
+  return lines;
 }
 
 double PlanarCase::critical(Side side) const {
@@ -328,11 +338,10 @@ std::optional<PlanarCase> planar_case(const Model& model, const Parameters& para
 }
 
 std::optional<PlanarCase> planar_case_along(const Model& model, const Parameters& parameters,
-                                            const Vec3& along, int body, Obstacle* obstacle,
-                                            std::span<const Obstacle> ignored) {
+                                            const Vec3& along, int body, Obstacle* obstacle) {
   Candidate candidate{model, parameters, nullptr, {}, body, model.bodies[static_cast<std::size_t>(body)]};
   look_along(candidate, along);
-  return looked_at(candidate, obstacle, ignored);
+  return looked_at(candidate, obstacle);
 }
 
 PlanarCase block_along(const Model& model, const Parameters& parameters, const Vec3& along, int body) {
@@ -344,8 +353,8 @@ PlanarCase block_along(const Model& model, const Parameters& parameters, const V
   return candidate.found;
 }
 
-Pose pose(const PlanarCase& of, const State& state) {
-  const Motion centre = centre_of_gravity(of.block, state);
+Pose pose(const PlanarCase& of, const State& state, const Turned& known) {
+  const Motion centre = centre_of_gravity(of.block, state, known);
   return {of.origin + of.along * centre.x + Vec3(0, 0, centre.z), exp_quaternion(state.tilt * of.across)};
 }
 

@@ -11,6 +11,7 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/planar/integrator.h"
+#include "solver/planar/landing.h"
 
 namespace topple::planar {
 
@@ -25,12 +26,9 @@ enum class Obstacle {
   stands,     ///< does not begin on the floor
   symmetry,   ///< about that plane: contact points, products of inertia
   edge,       ///< the base ends in one point to a side
-  /// Contact points of the base between its edges take a part of each landing: with as many in the middle as
-  /// on each edge the cabinet of the tests keeps 1.008 times the rate of Housner's block.
-  between,
-  early,  ///< another contact point meets the floor before it has overturned
-  near,   ///< a wall or body is within its fall
-  jump    ///< the floor's velocity jumps upward or downward
+  early,      ///< another contact point meets the floor before it has overturned
+  near,       ///< a wall or body is within its fall
+  jump        ///< the floor's velocity jumps upward or downward
 };
 
 /// An Obstacle is an enumerator and a row of the table in planar_case.cpp.
@@ -66,6 +64,9 @@ std::optional<PlanarCase> planar_case(const Model& model, const Parameters& para
                                       std::span<const BodyStart> starts, int body,
                                       Obstacle* obstacle = nullptr);
 
+/// The base of a body whose motion is along this horizontal unit vector, from left to right.
+std::vector<BaseLine> base_lines(const Model& model, int body, const Vec3& along);
+
 /// How a body moves: its centre of gravity, m, and the rotation vector from its reference pose, rad; m/s,
 /// rad/s; world.
 struct RigidMotion {
@@ -77,10 +78,9 @@ std::optional<PlanarCase> planar_case(const Model& model, const Parameters& para
                                       const RigidMotion& motion, std::span<const Vec3> centres, int body,
                                       Obstacle* obstacle = nullptr);
 /// The same of one that moves along this horizontal unit vector already; its state is not looked at, nor are
-/// walls and other bodies. `ignored`: obstacles that do not count.
+/// walls and other bodies.
 std::optional<PlanarCase> planar_case_along(const Model& model, const Parameters& parameters,
-                                            const Vec3& along, int body, Obstacle* obstacle = nullptr,
-                                            std::span<const Obstacle> ignored = {});
+                                            const Vec3& along, int body, Obstacle* obstacle = nullptr);
 /// Its block whatever stands in the way by now.
 PlanarCase block_along(const Model& model, const Parameters& parameters, const Vec3& along, int body);
 
@@ -89,6 +89,6 @@ struct Pose {
   Vec3 centre;
   Quat rotation;
 };
-Pose pose(const PlanarCase& of, const State& state);
+Pose pose(const PlanarCase& of, const State& state, const Turned& known = {});
 
 }  // namespace topple::planar

@@ -143,14 +143,16 @@ AfterImpact impact_about_edge(const Block& block, const Motion& v, double rate, 
 }
 
 AfterImpact impact_about_edge(const Block& block, const Motion& v, double rate, Side side) {
-  const AfterImpact out = impact_about_edge(block, v, rate, side, block.restitution);
-  if (block.restitution <= 1) return out;
   const auto energy = [&](double x_velocity, double z_velocity, double turn) {
     return x_velocity * x_velocity + z_velocity * z_velocity + block.inertia_over_mass() * turn * turn;
   };
-  const bool gains = energy(out.x_velocity, out.z_velocity, out.rate) >
-                     energy(v.x_velocity, v.z_velocity, rate) * (1 + k_rounding);
-  return gains ? impact_about_edge(block, v, rate, side, 1) : out;
+  const double most = energy(v.x_velocity, v.z_velocity, rate) * (1 + k_rounding),
+               landing = block.landing(side);
+  for (const double factor : {block.restitution * landing, landing}) {
+    const AfterImpact out = impact_about_edge(block, v, rate, side, factor);
+    if (factor <= 1 || energy(out.x_velocity, out.z_velocity, out.rate) <= most) return out;
+  }
+  return impact_about_edge(block, v, rate, side, 1);
 }
 
 /// The state in which the centre of gravity moves so, an edge on the floor.
@@ -192,7 +194,8 @@ std::string_view word(Event event) {
 
 double greatest_restitution(const Block& block) {
   const double about_centre = block.inertia_over_mass() + block.height * block.height;
-  const double kept = about_centre - block.left * block.right;
+  const double kept =
+      (about_centre - block.left * block.right) * std::max(block.left_landing, block.right_landing);
   const auto about = [&](double u) { return about_centre + u * u; };
   return kept > 0 ? std::sqrt(about(block.left) * about(block.right)) / kept
                   : std::numeric_limits<double>::infinity();

@@ -5,7 +5,8 @@
 //   edge on the floor     v+ = v + W j, w+ = 0, with Moreau's complementarity in the velocities after
 //   base on the floor     the impulse keeps the base flat if its resultant lies within the base; else the
 //                         block goes on about the edge beyond which that would lie. Without slip the rate is
-//                         by angular momentum about the edge, times the restitution factor r:
+//                         by angular momentum about the edge, times the restitution factor r and that of
+//                         points between the edges (landing.h), here one:
 //                         th'+ = r (k^2 th' + h vx + u vz)/(k^2 + h^2 + u^2), v of the centre of gravity
 //                         (Housner: r (k^2 + h^2 - l r)/(k^2 + h^2 + u^2) th')
 // A slip that would press the edge on the floor ever harder (Painleve: 1 + X E/k^2, equations.h, not above

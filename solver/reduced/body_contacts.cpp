@@ -217,7 +217,7 @@ template <bool with_slope, bool plain, class Normal>
   if (plain || law.in_packs) {
     respond_coulomb<with_slope, plain>(law, n, v, gamma_dt, touch);
   } else {
-    touch.conservative = touch.normal = touch.stick_energy = Four(0);
+    touch.conservative = touch.normal = touch.limit = touch.stick_energy = Four(0);
     touch.tangential = in_all_lanes(Vec3::Zero());
     if (with_slope) {
       touch.tangent_nn = touch.tangent_identity = touch.drag = Four(0);

@@ -182,6 +182,10 @@ class BodyContacts {
   /// (m/s^2; rad/s^2, material axes); infinite: not within `within`, s.
   double next_landing(const BodyState& s, const Vec3& acceleration, const Vec3& angular_acceleration,
                       double within) const;
+  /// Time until the next point that slips comes to rest on its plane, s, likewise; of slow ones, which stop
+  /// within micrometres, none.
+  double next_stop(const BodyState& s, const Vec3& acceleration, const Vec3& angular_acceleration,
+                   double within) const;
   /// Longest step, s: least of contact_ahead and bounce_limit (step_limits.h; k_quiet_steps of them where the
   /// body is `quiet`) and k_longest_step.
   double look_ahead(const ContactLaw& law, bool quiet, const BodyState& s) const;

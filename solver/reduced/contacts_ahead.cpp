@@ -42,6 +42,32 @@ double BodyContacts::next_landing(const BodyState& s, const Vec3& acceleration,
   return first < within ? first : never;
 }
 
+double BodyContacts::next_stop(const BodyState& s, const Vec3& acceleration, const Vec3& angular_acceleration,
+                               double within) const {
+  constexpr double k_slow = 5e-3;       // m/s
+  constexpr double k_slips = 1 - 1e-6;  // of the limit, squared
+  const double never = std::numeric_limits<double>::infinity();
+  const Points linear = in_all_lanes(s.velocity),
+               angular = in_all_lanes(Vec3(s.rotation * s.angular_velocity)),
+               gain = in_all_lanes(acceleration),
+               turn = in_all_lanes(Vec3(s.rotation * angular_acceleration));
+  Four soonest = Four(never);
+  for (const Touch& touch : now_.list()) {
+    const Points n = normal(touch), circling = cross(angular, touch.arm);
+    const Points slip = tangential(n, linear + circling);
+    const Four slip2 = dot(slip, slip),
+               slows = -dot(slip, gain + (cross(turn, touch.arm) + cross(angular, circling))),
+               when = slip2 / slows;
+    const Four::Mask stops =
+        touch.touching & (Four(0) < touch.limit) &
+        (k_slips * touch.limit * touch.limit <= dot(touch.tangential, touch.tangential)) &
+        (Four(k_slow * k_slow) < slip2) & (Four(0) < slows) & (when < soonest);
+    soonest = choose(stops, when, soonest);
+  }
+  const double first = std::min(std::min(soonest[0], soonest[1]), std::min(soonest[2], soonest[3]));
+  return first < within ? first : never;
+}
+
 double BodyContacts::look_ahead(const ContactLaw& law, bool quiet, const BodyState& s) const {
   double stiffness = 0, limit = k_longest_step;
   const Vec3 omega = s.rotation * s.angular_velocity;

@@ -64,10 +64,10 @@ double CoupledBodies::first(const ContactLaw& law) const {
 }
 
 // The bodies have been placed.
-double CoupledBodies::next_landing(double within) {
+double CoupledBodies::next_kink(double within) {
   double soonest = within;
   for (const ModelBody& b : bodies_)
-    soonest = std::min(soonest, b.body->next_landing(next_->bodies[b.index], soonest));
+    soonest = std::min(soonest, b.body->next_kink(next_->bodies[b.index], soonest));
   soonest = std::min(soonest, coupling_.next_touch(pairs_, soonest));
   return soonest < within ? soonest : std::numeric_limits<double>::infinity();
 }
@@ -177,7 +177,7 @@ bool CoupledBodies::solve_stage(const SubstepSpan& span, const PreparedLaw& law,
     correction_ = side_;
     taken_part = 1;
     const double rate = newton.rate(size, law);
-    if (over * rate <= StageNewton::k_error) {
+    if (over * rate <= StageNewton::error(span.parameters.tolerance)) {
       newton.fresh = false;
       return true;
     }
@@ -278,7 +278,7 @@ struct AllTogether {
   CoupledBodies& all;
 
   double first(const ContactLaw& law) const { return all.first(law); }
-  double next_landing(double within) { return all.next_landing(within); }
+  double next_kink(double within) { return all.next_kink(within); }
   double wanted() const {
     double least = 0;
     for (const ModelBody& b : all.bodies_)

@@ -30,7 +30,7 @@ class CoupledBodies {
  private:
   friend struct AllTogether;
   double first(const ContactLaw& law) const;
-  double next_landing(double within);
+  double next_kink(double within);
   ImplicitOutcome substep(const SubstepSpan& span);
   void find(const ContactLaw& law);
   void shape_matrices();

@@ -336,11 +336,17 @@ double ReducedBody::next_landing(const BodyState& s, double within) const {
   return contacts_.next_landing(s, s.force / mass_, angular_acceleration(s), within);
 }
 
+double ReducedBody::next_kink(const BodyState& s, double within) const {
+  const Vec3 acceleration = s.force / mass_, turn = angular_acceleration(s);
+  return std::min(contacts_.next_landing(s, acceleration, turn, within),
+                  contacts_.next_stop(s, acceleration, turn, within));
+}
+
 namespace {
 
 // Newton for the velocity of a stage.
-bool solve_stage(ImplicitSubstep& substep, const PreparedLaw& law, StageNewton& newton, RigidSolver& solver,
-                 RigidSolver& sticks) {
+bool solve_stage(ImplicitSubstep& substep, const SubstepSpan& span, const PreparedLaw& law,
+                 StageNewton& newton, RigidSolver& solver, RigidSolver& sticks) {
   newton.begin_stage();
   for (int iteration = 0; iteration < k_newton_iterations; ++iteration) {
     substep.reach(newton.fresh);
@@ -352,7 +358,7 @@ bool solve_stage(ImplicitSubstep& substep, const PreparedLaw& law, StageNewton& 
     solver.solve(left.linear, left.angular);
     substep.correct(left);
     const double size = substep.size_of(left), rate = newton.rate(size, law);
-    if (size * rate <= StageNewton::k_error * substep.scale()) {
+    if (size * rate <= StageNewton::error(span.parameters.tolerance) * substep.scale()) {
       newton.fresh = false;
       substep.end_stage();
       return true;
@@ -370,7 +376,7 @@ struct BodyAlone {
   StepEnergy& booked;
 
   double first(const ContactLaw& law) const { return body.first_substep(law); }
-  double next_landing(double within) const { return body.next_landing(s, within); }
+  double next_kink(double within) const { return body.next_kink(s, within); }
   double wanted() const { return s.substep; }
   void want(double size) { s.substep = size; }
   ImplicitOutcome substep(const SubstepSpan& span) {
@@ -378,7 +384,7 @@ struct BodyAlone {
     StageNewton newton;
     RigidSolver solver, sticks;
     for (const PreparedLaw* law : {&span.middle.law, &span.end.law})
-      if (!solve_stage(substep, *law, newton, solver, sticks)) {
+      if (!solve_stage(substep, span, *law, newton, solver, sticks)) {
         substep.give_up();
         return ImplicitOutcome::given_up(ImplicitOutcome::k_no_stage);
       }

@@ -32,7 +32,7 @@ struct SubstepSpan {
         h(h_),
         gamma_dt(k_gamma * h),
         early(k_early * h),
-        middle(parameters, start.time + 2 * gamma_dt) {}
+        middle(parameters, start.time + 2 * gamma_dt, start) {}
 
   /// Integral over the substep of what has these values at its start and at the ends of its stages: with the
   /// weights of the method, and to third order (Hosea and Shampine 1996).
@@ -60,7 +60,8 @@ struct ImplicitOutcome {
 /// Newton's iterations for the stages of a substep, of one body or of several. Its matrix serves as long as
 /// corrections shrink well.
 struct StageNewton {
-  static constexpr double k_error = 1e-7;  ///< of the speed
+  /// Of the speed: far below the local error that a tolerance allows, above what rounding leaves.
+  static double error(double tolerance) { return std::clamp(1e-4 * tolerance, 1e-11, 1e-7); }
 
   bool fresh = true;  ///< the next iteration makes the matrix anew
   double last = std::numeric_limits<double>::infinity();
@@ -170,7 +171,7 @@ class ImplicitSubstep {
 /// Advances a system by implicit substeps, as long as errors and landings allow; as ReducedBody::advance.
 /// `system` has
 ///   double first(const ContactLaw&)   s, a first guess at a substep after a touch
-///   double next_landing(double within)   s, the time until something touches
+///   double next_kink(double within)   s, the time until something touches, or ceases to slip on a plane
 ///   double wanted(), void want(double)   s, the substep that is tried next; 0: none was taken yet
 ///   ImplicitOutcome substep(const SubstepSpan&)
 template <class System>
@@ -183,12 +184,12 @@ StepStatus::Kind advance_by_substeps(System& system, const Parameters& parameter
   while (left > 0) {
     const double first = system.first(from.law);
     double size = system.wanted() > 0 ? system.wanted() : first;
-    if (const double landing = system.next_landing(std::min(size, left)); landing < size)
-      size = std::max(landing, std::min(size, first));
+    if (const double kink = system.next_kink(std::min(size, left)); kink < size)
+      size = std::max(kink, std::min(size, first));
     const double wanted = size;
     if (left < 2 * size) size = left <= size ? left : left / 2;
     const bool last = size == left;
-    const StepInputs to = last ? end : StepInputs(parameters, from.time + size);
+    const StepInputs to = last ? end : StepInputs(parameters, from.time + size, from);
     const ImplicitOutcome substep = system.substep({parameters, from, to, size});
     const bool good = substep.end == SubstepEnd::reached;
     const double next = size * std::clamp(k_safety / elementary::cbrt(substep.error), 1 / k_most_shrinking,

@@ -22,7 +22,7 @@ constexpr double k_quiet_turn = 1.5;           // likewise, of a quiet body
 constexpr double k_free_turn = 2.5;            // rad per substep, of the highest mode
 constexpr double k_small_turn = 0.02;          // rad
 constexpr double k_least_substep = 1. / 4096;  // of a step
-constexpr double k_rounding = 1e-12;           // of a substep
+constexpr double k_substep_rounding = 1e-12;   // of it
 
 // Of a contact's springs, in any direction, over alpha/L.
 double greatest_stiffness(const ContactLaw& law) {
@@ -390,8 +390,8 @@ StepStatus::Kind ReducedBody::advance(const Parameters& parameters, const StepIn
   w.from.reset();
   while (!implicit) {
     // of equal substeps the last is as long as the others to the bit: its propagator is there
-    const bool last = left <= (1 + k_rounding) * size;
-    const double way = left < (1 - k_rounding) * size ? left : size;
+    const bool last = left <= (1 + k_substep_rounding) * size;
+    const double way = left < (1 - k_substep_rounding) * size ? left : size;
     const StepInputs& from = w.from ? *w.from : start;
     if (!last) w.to.emplace(parameters, from.time + size, from);
     const ExplicitOutcome outcome =
@@ -419,8 +419,8 @@ double ReducedBody::look_ahead(const Parameters& parameters, const ContactLaw& l
     limit = contacts_.look_ahead(law, is_quiet(parameters, s), s);
   } else {
     if ((contacts_.any() || anchors_.holds()) && s.substep > 0) limit = std::min(limit, s.substep);
-    if (const double landing = next_landing(s, limit); landing < limit)
-      limit = std::max(landing, std::min(limit, first_substep(law)));
+    if (const double kink = next_kink(s, limit); kink < limit)
+      limit = std::max(kink, std::min(limit, first_substep(law)));
   }
   const double turning = s.angular_velocity.norm();
   return turning * limit > k_turn ? k_turn / turning : limit;
@@ -469,11 +469,6 @@ void add_columns(const Eigen::MatrixXd& matrix, int first, const double* factors
 
 void ReducedBody::section_forces(const BodyState& s, std::vector<SectionForces>& sections) {
   const Body& body = model_.bodies[body_];
-  if (s.level == ModelLevel::rigid) {
-    std::fill_n(sections.begin() + body.first_element, body.element_count,
-                SectionForces{Vec3::Zero(), Vec3::Zero()});
-    return;
-  }
   section_.setZero(basis_->section.rows());
   int k = 0;
   for (; k + 4 <= basis_->modes; k += 4) add_columns<4>(basis_->section, k, &s.amplitude[k], section_);

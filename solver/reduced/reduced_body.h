@@ -76,12 +76,14 @@ class ReducedBody {
                            double h, BodyState& s, std::span<Vec3> stick, StepEnergy& energy,
                            ReducedScratch& scratch);
   /// Longest step that resolves contacts and turning, s. Elastic: BodyContacts::look_ahead. Rigid:
-  /// BodyState::substep while it touches, and the time to the next touch. Contacts of `s` have been found.
+  /// BodyState::substep while it touches, and next_kink(). Contacts of `s` have been found.
   double look_ahead(const Parameters& parameters, const ContactLaw& law, const BodyState& s) const;
 
-  /// s: the time until an open point reaches a plane, infinite when that is not within `within`; a first
-  /// guess at an implicit substep that follows a touch. Contacts of `s` have been found.
+  /// s: the time until an open point reaches a plane, infinite when that is not within `within`; until that
+  /// or until one that slips comes to rest; a first guess at an implicit substep that follows a touch.
+  /// Contacts of `s` have been found.
   double next_landing(const BodyState& s, double within) const;
+  double next_kink(const BodyState& s, double within) const;
   double first_substep(const ContactLaw& law) const;
   BodyContacts& contacts() { return contacts_; }
   const BodyContacts& contacts() const { return contacts_; }
@@ -112,8 +114,8 @@ class ReducedBody {
   void add_member_force(int node, const Vec3& force);
   /// Appends the contacts found last.
   void list_contacts(std::vector<ContactForce>& forces) const;
-  /// Section forces of the body's elements at `s` under the forces found last, into those of the model; zero
-  /// on the level rigid.
+  /// Section forces of the body's elements at `s`, on a level with stresses, under the forces found last,
+  /// into those of the model.
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
   /// Adds to the nodes of `state` what the forces found last deflect them statically beyond the modes.
   void add_residual(const BodyState& s, State& state) const;

@@ -304,7 +304,7 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
   const BodyPose on = bearer_pose(poses_, bearers_[b].body);
   o.vertical = poses_[b].rotation.conjugate() * (on.rotation * Vec3::UnitZ());
   take_pose(model, b);
-  tilts_and_slides_[b] = tilt_and_slide(model, state, b);
+  if (!ends_known_) tilts_and_slides_[b] = tilt_and_slide(model, state, b);
   const double beyond = o.tilt - o.critical;
   if (beyond > 0 && !o.beyond_since) {
     const bool crossed = state.step > 0 && before < 0;
@@ -372,7 +372,9 @@ void Outcome::observe_peaks(const Model& model, const State& end,
       o.tilt = tilt;
       o.critical = critical;
     }
+    tilts_and_slides_[b] = to;
   }
+  ends_known_ = true;
 }
 
 // What lifts off and lands, until the body overturns: then the base is no longer what it lies on. An uplift
@@ -428,6 +430,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     observe_pose(model, state, b, events);
     observe_sides(model, state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }
+  ends_known_ = false;
   observe_sections(model, state, sections, goes_on, events);
   observe_anchors(model, state, events);
 }

@@ -188,6 +188,7 @@ class Outcome {
   std::vector<AnchorOutcome> anchors_;
   std::vector<Bearer> bearers_;
   std::vector<std::array<Varying, 2>> tilts_and_slides_;  ///< per body, at this observation
+  bool ends_known_ = false;                               ///< those at the next one, by observe_peaks()
   std::vector<BodyPose> poses_;                           ///< likewise, of furniture, or at a peak
   std::vector<Stack> stacks_;                             ///< likewise
   std::vector<char> broke_;                               ///< per element

@@ -73,7 +73,7 @@ Run::Run(const Setup& setup, RunPoint point)
   if (!status_.ok()) return;
   if (is_static()) path_.emplace(setup.model, setup.run.statics);
   resume(setup.model, now_.state, workspace_);
-  find_acting(now_.state, now_acting_);
+  find_acting(now_.state, contact_forces(setup.model, now_.parameters, now_.state, workspace_), now_acting_);
 }
 
 const RunPoint& Run::point() const {
@@ -93,9 +93,10 @@ StepStatus Run::advance() {
   now_.newton_iterations += status_.newton_iterations;
   now_.rejected_steps += status_.rejected;
   if (status_.ok()) {
+    const InPhase phase(&workspace_.profile(), Phase::observe);
     observe_stresses_since(start);
     observe_peaks();
-    observe();
+    observe(contact_forces_after_step(now_.state, workspace_));
   }
   return status_;
 }
@@ -140,11 +141,14 @@ std::optional<double> Run::stable_step() {
   return limit && std::isfinite(share) ? std::optional(share * *limit) : std::nullopt;
 }
 
-void Run::find_acting(const State& state, Acting& acting) const {
+void Run::find_acting(const State& state, const std::vector<ContactForce>& contacts, Acting& acting) const {
   acting.contacts.reserve(setup_->model.contact_points.size() * setup_->model.planes.size());
-  acting.contacts = contact_forces(setup_->model, now_.parameters, state, workspace_);
+  acting.contacts = contacts;
   acting.between_members = member_forces(workspace_);
-  acting.sections = section_forces(workspace_);
+  const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
+  const bool stressed = path_ || ranges::any_of(state.bodies, has_stresses);
+  if (stressed || acting.stressed) acting.sections = section_forces(workspace_);  // of a room, they are many
+  acting.stressed = stressed;
   if (path_) path_->add_weight(now_.parameters, state, acting.sections);
 }
 
@@ -157,7 +161,7 @@ Snapshot Run::snapshot(double time) const {
 void Run::look_within(double time) const {
   const Model& model = setup_->model;
   state_within_step(model, now_.state, time, workspace_, within_);
-  find_acting(within_, within_acting_);
+  find_acting(within_, contact_forces(model, now_.parameters, within_, workspace_), within_acting_);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (traits(within_.bodies[b].level).moves_nodes)
       section_forces(model, within_, static_cast<int>(b), within_acting_.sections);
@@ -168,7 +172,6 @@ void Run::observe_stresses_since(double start) {
   const double rate = setup_->run.output_rate, end = now_.state.time;
   const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
   if (ranges::none_of(now_.state.bodies, has_stresses)) return;
-  const InPhase phase(&workspace_.profile(), Phase::observe);
   if (within_.bodies.empty()) look_within(end);  // takes its memory with the first step
   for (double row = std::floor(start * rate + k_row_slack) + 1; row < end * rate - k_row_slack; ++row) {
     look_within(row / rate);
@@ -177,7 +180,6 @@ void Run::observe_stresses_since(double start) {
 }
 
 void Run::observe_peaks() {
-  const InPhase phase(&workspace_.profile(), Phase::observe);
   if (within_.bodies.empty()) within_ = now_.state;  // takes its memory with the first step
   now_.outcome.observe_peaks(setup_->model, now_.state, [this](double time) -> const State& {
     state_within_step(setup_->model, now_.state, time, workspace_, within_);
@@ -186,10 +188,13 @@ void Run::observe_peaks() {
 }
 
 void Run::observe() {
-  const InPhase phase(&workspace_.profile(), Phase::observe);
+  observe(contact_forces(setup_->model, now_.parameters, now_.state, workspace_));
+}
+
+void Run::observe(const std::vector<ContactForce>& contact_forces) {
   const Model& model = setup_->model;
   const State& state = now_.state;
-  find_acting(now_.state, now_acting_);
+  find_acting(now_.state, contact_forces, now_acting_);
   if (!setup_->probes.empty() || !now_.places.empty() || setup_->run.stop_when == StopWhen::at_rest) point();
   now_.outcome.observe(model, now_.parameters, state, contacts(), member_contacts(), sections(), events_);
 

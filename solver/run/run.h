@@ -154,14 +154,16 @@ class Run {
     std::vector<ContactForce> contacts;
     std::vector<MemberForce> between_members;
     std::vector<SectionForces> sections;
+    bool stressed = true;  // some of them may not be zero
   };
   static Snapshot view(const State& state, const Acting& acting) {
     return {state, acting.contacts, acting.between_members, acting.sections};
   }
-  void find_acting(const State& state, Acting& acting) const;
+  void find_acting(const State& state, const std::vector<ContactForce>& contacts, Acting& acting) const;
   // Sets within_ and what acts there; nodes of bodies that are no frames are not placed.
   void look_within(double time) const;
   void observe();
+  void observe(const std::vector<ContactForce>& contact_forces);
   // At the recorded times within the newest step, which began at `start`, s.
   void observe_stresses_since(double start);
   void observe_peaks();

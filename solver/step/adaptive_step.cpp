@@ -14,6 +14,12 @@ constexpr double k_most_growth = 2;     // from step to step
 constexpr double k_most_shrinking = 5;  // of a step that is tried again
 constexpr int k_many_iterations = 8;    // of Newton: the step does not grow
 constexpr double k_explicit_share = 0.9;
+// Of the stable step of central differences without damping: a shorter step resolves all that a frame can do,
+// and is as good as any where nothing moves yet that its error could be measured by. Not looked for above
+// k_short_step.
+constexpr double k_resolved_share = 0.01;
+constexpr double k_short_step = 1e-6;   // s
+constexpr double k_unexplained = 1e-6;  // J, that it may leave
 
 // The size to try next after one of size h with this error and these iterations.
 double next_size(double h, double error, int iterations) {
@@ -39,6 +45,11 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
       w.explicit_limit && std::isfinite(share)
           ? k_explicit_share * share * w.explicit_limit->step / parameters.substep_refinement
           : k_longest_step;
+  const auto is_resolved = [&](double h) {
+    return h <= k_short_step && w.parts.moves_nodes() &&
+           std::abs(w.next.energy.unexplained() - state.energy.unexplained()) < k_unexplained &&
+           h <= k_resolved_share * w.find_undamped_limit(parameters, w.next);
+  };
   const bool by_limit = w.explicit_limit.has_value() && traits(parameters.integrator).is_explicit;
   const double left = std::min(until, next_kink(model, parameters, state.time)) - state.time;
   double h = state.step_size > 0 ? state.step_size : k_first_step;
@@ -55,12 +66,13 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
     // explicit substeps follow the motion: they are as short as they must be, whatever h
     const double reach = by_limit ? 0 : w.parts.explicit_reach(parameters);
     const double counts = h <= reach ? error.energy : error.greatest();
-    if (status.ok() && counts <= 1) {
+    const bool resolved = status.ok() && counts > 1 && is_resolved(h);
+    if (status.ok() && (counts <= 1 || resolved)) {
       if (h == left) w.next.time = state.time + left;
       // as far as the energy of explicit substeps adds up; without frames there is none
       const double by_reach = std::isfinite(reach) ? std::min(next_size(h, error.energy, 0), reach) : reach;
-      const double wanted =
-          std::min(std::max(next_size(h, error.greatest(), w.most_iterations), by_reach), longest);
+      const double wanted = std::min(
+          std::max({next_size(h, error.greatest(), w.most_iterations), by_reach, resolved ? h : 0}), longest);
       w.next.step_size = h;
       if (!by_limit) change_step(w.next, std::min(wanted, w.parts.time_limit(parameters, w.next)));
       break;

@@ -45,6 +45,8 @@ StepInProgress::StepInProgress(const Model& model_, const Parameters& parameters
       w(w_),
       start(w.reached && w.reached->time == from.time ? *w.reached : StepInputs(parameters, from.time)) {
   w.reached.emplace(parameters, end(), start);
+  w.jumps = acceleration_jumps(parameters.shakes, end());
+  if (w.jumps) w.reached->floor = acceleration_until(parameters.shakes, end());
 }
 
 void find_candidates(const StepInProgress& s, double approach) {
@@ -56,7 +58,7 @@ void find_candidates(const StepInProgress& s, double approach) {
 void switch_models(const StepInProgress& s) {
   const InPhase phase(&s.w.profile, Phase::models);
   if (s.w.models.update(s.model, s.parameters, s.start, *s.w.reached, s.w.next, s.w.parts))
-    s.w.explicit_limit.reset();
+    s.w.forget_limits();
 }
 
 void apply_events(StepInProgress& s) {

@@ -8,6 +8,7 @@
 #include "solver/body/candidates.h"
 #include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
+#include "solver/model/excitation.h"
 #include "solver/step/adaptive_step.h"
 #include "solver/step/stages.h"
 
@@ -136,12 +137,16 @@ StepStatus check_inputs(const Model& model, const Parameters& parameters, const 
   return status;
 }
 
-// The step in w.next is taken.
+// The step in w.next is taken. Where the floor's acceleration jumps, forces are those that follow.
 void accept(const Model& model, const Parameters& parameters, State& state, Workspace::Impl& w) {
   if (!model.anchors.empty()) {
     w.changed.assign(model.bodies.size(), false);
     if (break_anchors(model, w.next, w.changed))
       w.parts.balance(parameters, StepInputs(parameters, w.next.time), w.changed, w.next);
+  }
+  if (w.jumps) {
+    w.reached = StepInputs(parameters, w.next.time);
+    w.parts.balance(parameters, *w.reached, w.next);
   }
   take(w.next, state, w.moves_nodes(state));
 }

@@ -13,9 +13,11 @@
 namespace topple {
 
 /// Contact forces of planes at `state`, ordered by point then plane; the list lives until the next call with
-/// `workspace`. Also finds the section forces of rigid (zero) and elastic bodies.
+/// `workspace`. Also finds the section forces of elastic bodies.
 const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace);
+/// The same at the state that the newest step led to, under the parameters that it had: cheaper.
+const std::vector<ContactForce>& contact_forces_after_step(const State& state, Workspace& workspace);
 
 /// Forces between members of the last call of contact_forces.
 const std::vector<MemberForce>& member_forces(Workspace& workspace);

@@ -1,6 +1,7 @@
 // What Workspace keeps between steps, for the sources of the step alone.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -20,14 +21,27 @@ struct Workspace::Impl {
     if (parameters == now) return;
     parameters = now;
     models.forget();
+    parts.forget_parameters();
     reached.reset();
+    forget_limits();
+  }
+  void forget_limits() {
     explicit_limit.reset();
+    undamped_limit.reset();
   }
 
   /// Of a state that `parts` were arranged for; found once until the caches are invalidated.
   const std::optional<ExplicitLimit>& find_explicit_limit(const Parameters& now, const State& state) {
     if (!explicit_limit) explicit_limit = parts.explicit_limit(now, state);
     return explicit_limit;
+  }
+  /// As above, without damping; s. Infinite without frames.
+  double find_undamped_limit(const Parameters& now, const State& state) {
+    if (!undamped_limit) {
+      const std::optional<ExplicitLimit> limit = parts.explicit_limit(now, state, 0);
+      undamped_limit = limit ? limit->step : std::numeric_limits<double>::infinity();
+    }
+    return *undamped_limit;
   }
   /// Whether a step needs the per-node arrays: there are frames, or no step from such a state was tried yet.
   bool moves_nodes(const State& state) const {
@@ -41,8 +55,10 @@ struct Workspace::Impl {
   std::vector<PartScratch> scratches{1};        // per worker
   std::vector<PartOutcome> outcomes;            // per part, of the newest step
   std::optional<Parameters> parameters;         // seen last; for them hold:
-  std::optional<StepInputs> reached;            //   the end of the last step that was tried
+  std::optional<StepInputs> reached;            //   the end of the last step that was tried,
+  bool jumps = false;                           //   where the floor's acceleration jumps
   std::optional<ExplicitLimit> explicit_limit;  //   of the frames there are
+  std::optional<double> undamped_limit;         //   likewise, s
   std::vector<char> changed;                    // per body: one of its anchors was switched or broke
   ParallelFor parallel;
   Profile profile;

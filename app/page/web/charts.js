@@ -13,19 +13,23 @@ function sized(canvas) {
 
 // ---- the timeline
 
-// The pieces that have a colour: those that tilt most, of what they can, in their own order.
+const colourOf = (b) => colours[b % colours.length];
+
+// The pieces that have a colour: those that tilt most, of what they can, in their own order; one of each colour.
 function coloured() {
   const most = page.curves.bodies.map((shares) => Math.max(0, ...shares));
-  return most.map((_, b) => b).sort((a, b) => most[b] - most[a] || a - b).slice(0, colours.length)
-    .sort((a, b) => a - b);
+  const taken = new Map();
+  for (const b of most.map((_, i) => i).sort((a, c) => most[c] - most[a] || a - c))
+    if (!taken.has(colourOf(b))) taken.set(colourOf(b), b);
+  return [...taken.values()].sort((a, c) => a - c);
 }
 
 function buildKey() {
   page.coloured = coloured();
-  const items = page.coloured.map((b, i) => {
+  const items = page.coloured.map((b) => {
     const item = document.createElement('li');
     const swatch = document.createElement('i');
-    swatch.style.background = colours[i];
+    swatch.style.background = colourOf(b);
     item.append(swatch, page.names[b]);
     return item;
   });
@@ -73,20 +77,19 @@ function drawTimeline() {
   page.curves.bodies.forEach((shares, b) => {
     if (!page.coloured.includes(b)) path(shares, y);
   });
-  page.coloured.forEach((b, i) => {
-    brush.strokeStyle = colours[i];
-    brush.setLineDash(dashes[i % dashes.length].map((d) => d * scale));
+  page.coloured.forEach((b) => {
+    brush.strokeStyle = colourOf(b);
+    brush.setLineDash(dashes[b % dashes.length].map((d) => d * scale));
     path(page.curves.bodies[b], y);
   });
   brush.setLineDash([]);
-  const peak = Math.max(page.curves.floor_peak, 1e-9);
   const middle = (split + height) / 2 + 0.4 * letter, reach = (height - split) / 2 - 0.6 * letter;
   brush.lineWidth = scale;
   brush.strokeStyle = soft;
-  path(page.curves.floor, (gal) => middle - gal / peak * reach);
+  path(page.curves.floor, (gal) => middle - gal / page.curves.floor_scale * reach);
   brush.fillStyle = ink;
   brush.fillText(`${page.words.tilt} — ${page.words.critical}`, 2 * scale, letter);
-  brush.fillText(`${page.words.floor} ±${shownNumber(peak)}`, 2 * scale, split + letter);
+  brush.fillText(`${page.words.floor} ±${shownNumber(page.curves.floor_scale)}`, 2 * scale, split + letter);
   brush.strokeStyle = style.getPropertyValue('--accent');
   brush.lineWidth = 2 * scale;
   brush.strokeRect(x(page.time), 0, 0, height);

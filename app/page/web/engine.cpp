@@ -176,7 +176,8 @@ Json map_json(int body, double ms) {
           {"here", {e.map->shake().frequency, e.map->shake().amplitude / k_gal}}};
 }
 
-/// Of each body its tilt as share of its critical angle; of the floor its acceleration and its peak, gal.
+/// Of each body its tilt as share of its critical angle; of the floor its acceleration, and up to which it is
+/// shown, gal.
 Json curves(const std::vector<io::FrameRow>& rows, const io::Scene& scene) {
   Json times = Json::array(), floor = Json::array(), bodies = Json::array();
   const std::vector<Shake>& shakes = scene.setup.parameters.shakes;
@@ -191,7 +192,7 @@ Json curves(const std::vector<io::FrameRow>& rows, const io::Scene& scene) {
   }
   return {{"times", times},
           {"floor", floor},
-          {"floor_peak", floor_peak(rows, shakes) / k_gal},
+          {"floor_scale", floor_scale(rows, shakes) / k_gal},
           {"bodies", bodies}};
 }
 

@@ -10,6 +10,7 @@
 #include "solver/io/scene/scene_fittings.h"
 #include "solver/io/scene/scene_read.h"
 #include "solver/math/ranges.h"
+#include "solver/run/bearer.h"
 
 namespace topple::io {
 namespace {
@@ -58,7 +59,8 @@ class Fixing {
   static const FixingTraits& kind_of(const Entry& entry) { return traits(entry.chosen("kind", k_fixings)); }
 
   // Raises the corners of the base that are farthest from the wall, by contact points that reach lower there:
-  // the body starts as it leans on them, or on the wall if it comes to lean there first.
+  // the body starts as it leans on them, or on the wall if it comes to lean there first, and what stands on
+  // it leans with it.
   void lift() {
     if (!entry_.flag("on")) {
       setup_.wedges.push_back({entry_.name(), body_});
@@ -82,20 +84,26 @@ class Fixing {
     if (std::isfinite(above) && above > k_stands)
       entry_.fail("body", "\"" + body().name + "\" stands " + millimetres(above) +
                               " above the floor: a stopper lifts the front edge of what stands on it");
-    BodyStart& start = setup_.starts[body_];
-    if (!start.rotation.isZero(0) || !(depth > k_same))
+    if (!setup_.starts[body_].rotation.isZero(0) || !(depth > k_same))
       entry_.fail("body",
                   "\"" + body().name + "\" does not stand level on a base as deep as a stopper needs");
-    const double angle = leaning_angle(wall, x(*back), std::asin(std::min(1., kind_.lift / depth)));
-    if (!(angle > 0))
-      entry_.fail("body", "\"" + body().name + "\" touches \"" + wall.name +
-                              "\": a stopper leans it back, which takes a gap");
-    start.pivot = x(*back);
-    start.rotation = angle * wall.normal.cross(Vec3::UnitZ());
+    const std::vector<int> leaning = stack();
+    const auto room_of = [&](const std::vector<int>& bodies) {
+      return leaning_angle(bodies, wall, x(*back), std::asin(std::min(1., kind_.lift / depth)));
+    };
+    const double angle = room_of(leaning);
+    for (const int b : leaning)
+      if (!(angle > 0) && !(room_of({b}) > 0))
+        entry_.fail("body", "\"" + model().bodies[b].name + "\" touches \"" + wall.name +
+                                "\": a stopper leans it back, which takes a gap");
+    for (const int b : leaning) {
+      setup_.starts[b].pivot = x(*back);
+      setup_.starts[b].rotation = angle * wall.normal.cross(Vec3::UnitZ());
+    }
     Wedge wedge{entry_.name(), body_, {}, depth * std::sin(angle)};
     for (const int node : corners)
       if (distance(node) > distance(*front) - k_same) wedge.nodes.push_back(node);
-    each_contact_point([&](ContactPoint& point) {
+    each_contact_point(body_, [&](ContactPoint& point) {
       if (ranges::find(wedge.nodes, point.node) != wedge.nodes.end()) point.width += 2 * wedge.lift;
     });
     setup_.wedges.push_back(std::move(wedge));
@@ -207,20 +215,33 @@ class Fixing {
   }
 
   template <class F>
-  void each_contact_point(F f) const {
-    for (int p = 0; p < body().contact_point_count; ++p)
-      f(setup_.model.contact_points[body().first_contact_point + p]);
+  void each_contact_point(int index, F f) const {
+    const Body& of = model().bodies[index];
+    for (int p = 0; p < of.contact_point_count; ++p)
+      f(setup_.model.contact_points[of.first_contact_point + p]);
   }
 
-  // By which the body can be turned about `pivot` towards the wall until it touches it, rad, `most` at most.
-  double leaning_angle(const Target& wall, const Vec3& pivot, double most) const {
+  // The body and what stands level on it.
+  std::vector<int> stack() const {
+    const std::vector<Bearer> bearers = bearers_of(model(), setup_.starts);
+    std::vector<int> bodies{body_};
+    for (std::size_t k = 0; k < bodies.size(); ++k)
+      for (int b = 0; b < static_cast<int>(bearers.size()); ++b)
+        if (bearers[b].body == bodies[k] && setup_.starts[b].rotation.isZero(0)) bodies.push_back(b);
+    return bodies;
+  }
+
+  // By which bodies can be turned about `pivot` towards the wall until one touches it, rad, `most` at most.
+  double leaning_angle(const std::vector<int>& bodies, const Target& wall, const Vec3& pivot,
+                       double most) const {
     const auto room = [&](double angle) {
       double least = std::numeric_limits<double>::infinity();
-      each_contact_point([&](const ContactPoint& point) {
-        const Vec3 arm = x(point.node) - pivot;
-        least = std::min(least, wall.distance(pivot) + wall.normal.dot(arm) * std::cos(angle) -
-                                    arm.z() * std::sin(angle) - point.width / 2);
-      });
+      for (const int b : bodies)
+        each_contact_point(b, [&](const ContactPoint& point) {
+          const Vec3 arm = x(point.node) - pivot;
+          least = std::min(least, wall.distance(pivot) + wall.normal.dot(arm) * std::cos(angle) -
+                                      arm.z() * std::sin(angle) - point.width / 2);
+        });
       return least;
     };
     if (room(most) >= 0) return most;

@@ -171,7 +171,7 @@ void add_shake(std::vector<Key>& keys) {
   rows.plain("name", T::text, "for messages and `--set`").absent_means("shake-1, ...");
   rows.word("type", shake_kinds(), shake.kind, "form of the acceleration");
   rows.plain("building", T::table,
-             "the shake moves the ground of a uniform shear building, in which the floor is (building.h)")
+             "the shake moves the ground of a uniform shear building, in which the floor is")
       .absent_means("the floor is the ground");
   rows.plain("modes", T::tables, "likewise, of a building that these modes describe")
       .absent_means("those of `building`");
@@ -201,7 +201,7 @@ void add_shake(std::vector<Key>& keys) {
       .required()
       .only("type", kinds_with(&ShakeTraits::has_duration));
   rows.texts("files", 3,
-             "accelerograms: PEER AT2, K-NET or KiK-net ASCII, CSV (accelerogram_file.h), one to three "
+             "accelerograms: PEER AT2, K-NET or KiK-net ASCII, CSV, one to three "
              "components together, equally long; paths from the folder of the scene, or a built-in record")
       .required()
       .only("type", recorded);
@@ -222,8 +222,7 @@ void add_shake(std::vector<Key>& keys) {
       .only("type", recorded);
   rows.word("baseline", {"none", "parabola"},
             "correction of each component: parabola subtracts the one that leaves the least mean square "
-            "velocity "
-            "(Berg and Housner 1961; accelerogram.h)")
+            "velocity (Berg and Housner 1961)")
       .absent(0)
       .only("type", recorded);
 }
@@ -259,8 +258,7 @@ void add_contact(std::vector<Key>& keys) {
   rows.number("q", 0.5, 4, "penalty index of Eq. 2").absent(law.q);
   rows.number("friction", 0, 1.5, "coefficient of friction").absent(law.friction);
   rows.number("friction_static", 0, 1.5,
-              "coefficient of static friction, not below `friction`; falls to it with the slip speed "
-              "(contact_law.h)")
+              "coefficient of static friction, not below `friction`; falls to it with the slip speed")
       .absent_means("`friction`")
       .only("law", with_restitution)
       .only_in({"dynamic"});
@@ -282,8 +280,7 @@ void add_contact(std::vector<Key>& keys) {
   rows.number("member_share", 1e-3, 1, "share of alpha that members of two bodies have between them")
       .absent(law.member_share)
       .absent_means(
-          "1; where `alpha` is chosen, what lets bodies knock and lean on each other as rigid ones "
-          "(contact_default.h)");
+          "1; where `alpha` is chosen, what lets bodies knock and lean on each other as rigid ones");
   rows.plain("surfaces", T::boolean, "panels touch what meets them; false: members alone, as in the paper")
       .absent(Model{}.surfaces);
 }
@@ -325,8 +322,7 @@ void add_material(std::vector<Key>& keys) {
   rows.number("poisson", 0, 0.5, "Poisson's ratio").required();
   rows.number("density", D::density, "kg/m^3", 1e-3, 1e5, "density").required();
   rows.number("yield", D::stress, "MPa", 1, 1e13, "yield stress").absent_means("elastic");
-  rows.number("fracture_strain", 1e-6, 10,
-              "strain of the extreme fibre or of the axis at fracture (hinges.h)")
+  rows.number("fracture_strain", 1e-6, 10, "strain of the extreme fibre or of the axis at fracture")
       .absent_means("never breaks");
 }
 

@@ -23,8 +23,7 @@ void add_model(Rows& rows, BodyModel absent) {
 }
 
 void add_damping(Rows& rows) {
-  rows.number("damping", 0, 1,
-              "ratio to critical at the first elastic mode, proportional to stiffness (damping.h)")
+  rows.number("damping", 0, 1, "ratio to critical at the first elastic mode, proportional to stiffness")
       .absent(0)
       .only_in({"dynamic"});
 }

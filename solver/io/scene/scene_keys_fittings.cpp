@@ -13,7 +13,7 @@ constexpr double k_far = 1e3;  // m
 
 // Of an anchor, and of a fixing, which becomes one or several.
 void add_holding(Rows& rows, bool of_fixing) {
-  const char* const by_kind = "as its kind has it (fixing_kinds.h), assumed";
+  const char* const by_kind = "as its kind has it, assumed";
   Row stiffness =
       rows.number("stiffness", D::stiffness, "kN/m", 1, 1e12, "along the line from `to` to `point`");
   if (of_fixing)
@@ -53,7 +53,7 @@ void add_fitting_keys(std::vector<Key>& keys) {
   anchor.word(
       "type", k_anchor_types, Anchor::Type::strap,
       "strap: pulls only; bracket: both ways, and where `point` and `to` are one in all directions; pole: "
-      "pushes only (anchor.h)");
+      "pushes only");
   add_holding(anchor, false);
 
   Rows ceiling(keys, "ceiling");

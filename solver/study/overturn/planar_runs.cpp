@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/body/model_level.h"
+#include "solver/body/planar_body.h"
 #include "solver/contact/contact_default.h"
 
 namespace topple::study {
@@ -40,10 +41,14 @@ std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* wh
     against = model_against(setup, b);
     planar::Obstacle obstacle = planar::Obstacle::none;
     if (against.empty()) {
-      if (const auto found = planar::planar_case(setup.model, setup.parameters, setup.starts, b, &obstacle))
-        cases.push_back(*found);
-      else
+      const Parameters& p = setup.parameters;
+      const auto found = planar::planar_case(setup.model, p, setup.starts, b, &obstacle);
+      if (!found)
         against = traits(obstacle).phrase;
+      else if (hard_floor_error(setup.model, b, *found, p.contact) > p.accuracy)
+        against = "contacts are soft for its base";
+      else
+        cases.push_back(*found);
     }
     if (!against.empty()) against = setup.model.bodies[static_cast<std::size_t>(b)].name + ": " + against;
   }

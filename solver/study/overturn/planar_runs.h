@@ -20,8 +20,8 @@ struct BodyEnd {
 
 /// The blocks of a scene that asks for motion alone and for no way out, whose furniture is all `planar`, or
 /// `auto` and rigid by its own rules (model_level.h), without restitution, on contacts no softer than those
-/// of scenes that name none. Empty: it is not; `why`, if asked for: "cabinet: a wall or body is within its
-/// fall".
+/// of scenes that name none and hard enough (hard_floor_error()). Empty: it is not; `why`, if asked for:
+/// "cabinet: a wall or body is within its fall".
 std::vector<planar::PlanarCase> planar_cases(const Setup& setup, std::string* why = nullptr);
 
 /// Runs of an ensemble that are handed out at once, in lanes.

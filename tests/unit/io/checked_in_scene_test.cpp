@@ -3,6 +3,7 @@
 
 #include <cstdlib>
 #include <fstream>
+#include <regex>
 #include <sstream>
 
 #include "solver/io/scene/scene.h"
@@ -87,6 +88,12 @@ TEST(Scene, the_reference_that_is_checked_in_is_the_table_in_the_code) {
   const std::string path = TOPPLE_SOURCE_DIR "/assets/guide/scene-reference.md";
   if (std::getenv("TOPPLE_WRITE_REFERENCE")) std::ofstream(path, std::ios::binary) << scene_reference();
   EXPECT_EQ(file_text(path), scene_reference()) << "write it anew with TOPPLE_WRITE_REFERENCE=1 scene_test";
+}
+
+// What keys mean is shown in the window, too.
+TEST(Scene, no_key_sends_its_reader_to_a_source_file) {
+  const std::string reference = scene_reference();
+  EXPECT_FALSE(std::regex_search(reference, std::regex("\\w\\.h\\b")));
 }
 }  // namespace
 }  // namespace topple::io

@@ -215,6 +215,41 @@ to = "floor"
   }
 }
 
+// Bolted to it too: nothing strains the bolts as the run begins.
+TEST(Fixing, what_stands_on_a_piece_leans_with_it_on_its_stopper) {
+  const std::string text = R"(topple = 1
+floor = {}
+[[wall]]
+name = "back"
+at = [0, 0]
+normal = [1, 0, 0]
+[[furniture]]
+kind = "chest"
+against = "back"
+gap = "30 mm"
+[[furniture]]
+kind = "television"
+size = ["200 mm", "700 mm", "450 mm"]
+at = [0.24, 0, 1.0]
+[[fixing]]
+kind = "stopper"
+body = "chest"
+to = "floor"
+)";
+  for (const char* gap : {"furniture.1.gap=30 mm", "furniture.1.gap=2 mm"}) {
+    const topple::Setup setup = parse_scene(text, "s.toml", {gap}).setup;
+    ASSERT_EQ(setup.starts.size(), 2u);
+    EXPECT_FALSE(setup.starts[0].rotation.isZero(0)) << gap;
+    EXPECT_EQ(setup.starts[1].rotation, setup.starts[0].rotation) << gap;
+    EXPECT_EQ(setup.starts[1].pivot, setup.starts[0].pivot) << gap;
+    const State start = start_state(setup.model, setup.starts);
+    for (int p = 0; p < static_cast<int>(setup.model.contact_points.size()); ++p) {
+      const ContactPoint& point = setup.model.contact_points[p];
+      EXPECT_GT(start.position[point.node].x(), point.width / 2 - 1e-6) << gap;
+    }
+  }
+}
+
 TEST(Fixing, a_stopper_that_is_not_in_place_lifts_nothing_and_is_known) {
   const Scene scene = parse_scene(blocks(fixing("stopper", "back")), "s.toml", {"fixing.1.on=false"});
   ASSERT_EQ(scene.setup.wedges.size(), 1u);

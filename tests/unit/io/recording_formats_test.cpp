@@ -152,7 +152,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Kept{"format-10-topple-11", 10, "topple-11", true},
                       Kept{"format-10-topple-12", 10, "topple-12", true},
                       Kept{"format-10-topple-13", 10, "topple-13", true},
-                      Kept{"format-10-topple-14", 10, "topple-14", true}),
+                      Kept{"format-10-topple-14", 10, "topple-14", true},
+                      Kept{"format-10-topple-15", 10, "topple-15", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');

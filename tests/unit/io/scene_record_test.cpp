@@ -116,7 +116,7 @@ TEST(SceneRecord, errors_name_the_scene_the_key_the_file_and_its_line) {
             "s.toml:20:10: shake.quake.files.1: plain.csv:1: c");
   EXPECT_EQ(record_error(""),
             "s.toml:17:1: shake.1.files: missing; type = \"record\" needs it (accelerograms: PEER "
-            "AT2, K-NET or KiK-net ASCII, CSV (accelerogram_file.h), one to three components "
+            "AT2, K-NET or KiK-net ASCII, CSV, one to three components "
             "together, equally long; paths from the folder of the scene, or a built-in record)");
   EXPECT_EQ(record_error("files = []\n"),
             "s.toml:19:9: shake.1.files: expected a list of 1 to 3 values, found 0");

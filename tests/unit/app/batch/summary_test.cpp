@@ -85,6 +85,25 @@ TEST_F(SummaryTest, what_does_not_exist_is_null) {
   EXPECT_NE(summary_table(s).find(" -\n"), std::string::npos);
 }
 
+TEST(Summary, contact_is_told_where_something_can_touch) {
+  const auto told = [](const std::string& text) {
+    const io::Scene scene = io::parse_scene(text, "s.toml", {"run.duration=10 ms"});
+    topple::Run run(scene.setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    return summary_table(summary(scene, run, "completed", 1));
+  };
+  EXPECT_NE(told(k_shaken).find("\ncontact: coulomb, "), std::string::npos);
+  EXPECT_EQ(told(k_beam).find("contact: "), std::string::npos) << told(k_beam);
+}
+
+TEST_F(SummaryTest, iterations_are_told_where_there_were_some) {
+  Json s = summary(scene_, run_, "completed", 1);
+  s["newton_iterations"] = 7;
+  EXPECT_NE(summary_table(s).find(" rejected, 7 iterations\n"), std::string::npos) << summary_table(s);
+  s["newton_iterations"] = 0;
+  EXPECT_NE(summary_table(s).find(" rejected\n"), std::string::npos) << summary_table(s);
+}
+
 TEST_F(SummaryTest, bodies_that_were_computed_alike_share_a_line) {
   Json s = summary(scene_, run_, "completed", 0);
   Json body = s["bodies"][0];

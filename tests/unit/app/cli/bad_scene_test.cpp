@@ -128,32 +128,6 @@ TEST_F(BadSceneTest, no_alpha_is_advised_that_no_scene_may_name) {
   EXPECT_EQ(words.find("as on a rigid floor too"), std::string::npos) << words;
 }
 
-TEST_F(BadSceneTest, what_stands_on_a_piece_that_a_stopper_leans_is_warned_of) {
-  write_bytes("s.toml", R"(topple = 1
-floor = {}
-[[wall]]
-name = "back"
-at = [0, 0]
-normal = [1, 0, 0]
-[[furniture]]
-kind = "chest"
-against = "back"
-[[furniture]]
-kind = "television"
-size = ["200 mm", "700 mm", "450 mm"]
-at = [0.24, 0, 1.0]
-[[fixing]]
-name = "St"
-kind = "stopper"
-body = "chest"
-to = "floor"
-)");
-  const Ended ended = topple({"check", "s.toml"});
-  EXPECT_EQ(ended.code, 0) << ended.err;
-  EXPECT_NE(ended.err.find("\"television\" stands on \"chest\", which \"St\" lifts by "), std::string::npos)
-      << ended.err;
-}
-
 // The refrigerator is there, but overlaps another; a misspelt kind is a piece that others may mean.
 TEST_F(BadSceneTest, what_refers_to_a_piece_that_has_an_error_has_none) {
   const auto told = [](const char* kind, const char* at) {

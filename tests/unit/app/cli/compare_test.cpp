@@ -1,6 +1,9 @@
 // topple compare: what differs, in what is said and in what happens.
+#include <regex>
+
 #include "app/batch/summary.h"
 #include "solver/io/recording/recording.h"
+#include "unit/app/live.h"
 #include "unit/app/program.h"
 #include "unit/app/scenes.h"
 
@@ -17,6 +20,19 @@ class CompareTest : public ProgramTest {
   }
   static void record(const std::string& name, const std::string& change) {
     EXPECT_EQ(topple({"run", "s.toml", "--set", change, "-o", name, "--quiet"}).code, 0);
+  }
+  static void record_edited(const std::string& name, const std::vector<Edit>& edits) {
+    const io::Scene scene = io::load_scene("s.toml");
+    topple::Run run(scene.setup);
+    io::Recorder recorder({name, false}, scene.name, scene.text, scene.setup.model);
+    for (const Edit& edit : edits) {
+      run.edit(edit);
+      recorder.write(LoggedEdit{.edit = edit});
+    }
+    io::Observer observer;
+    recorder.write(observer.observe(run));
+    while (!run.over() && run.advance().ok()) recorder.write(observer.observe(run));
+    recorder.finish("completed", summary(scene, run, "completed", 1).dump());
   }
 };
 
@@ -51,19 +67,38 @@ TEST_F(CompareTest, what_differs_stands_with_both_values_and_units) {
 
 TEST_F(CompareTest, what_was_changed_before_the_first_step_is_what_the_run_began_with) {
   record("weak.h5", "shake.table.amplitude=0.1 g");
-  const io::Scene scene = io::load_scene("s.toml");
-  topple::Run run(scene.setup);
-  const Edit weaker{Edit::Key::amplitude, 0, Vec3(0.980665, 0, 0)};
-  run.edit(weaker);
-  io::Recorder recorder({"edited.h5", false}, scene.name, scene.text, scene.setup.model);
-  recorder.write(LoggedEdit{.edit = weaker});
-  io::Observer observer;
-  recorder.write(observer.observe(run));
-  while (!run.over() && run.advance().ok()) recorder.write(observer.observe(run));
-  recorder.finish("completed", summary(scene, run, "completed", 1).dump());
+  record_edited("edited.h5", {{Edit::Key::amplitude, 0, Vec3(0.980665, 0, 0)}});
   const Ended ended = topple({"compare", "weak.h5", "edited.h5"});
   EXPECT_EQ(ended.code, 0) << ended.err;
   EXPECT_NE(ended.out.find("no parameter differs"), std::string::npos) << ended.out;
+}
+
+TEST_F(CompareTest, a_pull_before_the_first_step_stands_among_the_edits_as_no_scene_can_say_it) {
+  record_edited("edited.h5",
+                {{Edit::Key::amplitude, 0, Vec3(0.980665, 0, 0)}, {Edit::Key::pull, 4, Vec3(100, 0, 0)}});
+  const Ended ended = topple({"compare", "s.toml", "edited.h5"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find("shake.table.amplitude  400 gal"), std::string::npos) << ended.out;
+  EXPECT_NE(ended.out.find("pull = [100 N, 0 N, 0 N] from 0.000 s on"), std::string::npos) << ended.out;
+  EXPECT_EQ(ended.out.find("edit 2"), std::string::npos) << ended.out;
+}
+
+// As after R and the end of the window.
+TEST_F(CompareTest, the_branch_that_is_compared_is_named_with_how_long_it_ran) {
+  const auto scene = std::make_shared<const io::Scene>(io::load_scene("s.toml"));
+  LiveRun run(LiveSource{.scene = scene, .recording = {}, .output = "left.h5"});
+  Player player(scene, run);
+  const auto until = [&](auto done) { return eventually([&] { player.update(0.01); }, done); };
+  ASSERT_TRUE(until([&] { return player.can_edit(); }));
+  player.step(1);
+  ASSERT_TRUE(until([&] { return player.time() > 0 && player.can_edit(); }));
+  player.restart();
+  ASSERT_TRUE(until([&] { return player.history().branches.size() == 2 && player.can_edit(); }));
+  run.close("stopped");
+  const Ended ended = topple({"compare", "s.toml", "left.h5"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.out.find(" B: left.h5, branch 1\n"), std::string::npos) << ended.out;
+  EXPECT_TRUE(std::regex_search(ended.out, std::regex("\nsimulated, s +0\\.300 +0\\.000\n"))) << ended.out;
 }
 
 TEST_F(CompareTest, what_was_changed_while_it_ran_stands_with_its_value_and_its_time) {

@@ -83,6 +83,17 @@ TEST(PageRows, the_peak_of_the_floor_is_that_of_the_run_and_not_of_the_rows_that
   EXPECT_NEAR(floor_peak(rows, shakes), 0.951, 1e-3);
 }
 
+TEST(PageRows, a_floor_that_stands_still_has_the_scale_of_one_that_moves) {
+  std::vector<io::FrameRow> rows(2);
+  rows[1].floor_acceleration[0] = 1e-11;
+  std::vector<Shake> shakes(1);
+  shakes[0].direction = Vec3::UnitX();
+  EXPECT_EQ(floor_scale(rows, {}), 0.1);
+  EXPECT_EQ(floor_scale(rows, shakes), 0.1);
+  rows[1].floor_acceleration[0] = 2;
+  EXPECT_EQ(floor_scale(rows, shakes), 2);
+}
+
 TEST(PageControls, each_changes_the_scene_as_it_says) {
   for (const char* name :
        {"paper-a", "anchored", "cabinet", "near-fault", "desk", "folding-leg", "weak-storey"}) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <regex>
 
 #include "app/batch/summary.h"
 #include "app/report/svg_chart.h"
@@ -139,6 +140,31 @@ TEST_F(ReportPageTest, planar_blocks_are_not_said_to_stand_on_springs) {
 TEST_F(ReportPageTest, elastic_stresses_are_not_said_to_be_those_of_steel) {
   EXPECT_TRUE(holds(page(), "Stresses are elastic"));
   EXPECT_FALSE(holds(page(), "real steel"));
+}
+
+// All but the one at the back stand far from the piece, the door and the person.
+TEST_F(ReportPageTest, the_plan_of_a_room_has_all_its_walls) {
+  const io::Scene scene =
+      io::parse_scene(std::string(k_lone_block) +
+                          "at = [-1.8, 0]\n[[place]]\nname = \"desk\"\nat = [-1, 0]\n"
+                          "[[door]]\nname = \"door\"\nwall = \"back\"\nat = 1\nwidth = 0.8\n"
+                          "[[wall]]\nname = \"back\"\nat = [-2.1, 0]\nnormal = [1, 0, 0]\n"
+                          "[[wall]]\nname = \"front\"\nat = [1.5, 0]\nnormal = [-1, 0, 0]\n"
+                          "[[wall]]\nname = \"left\"\nat = [0, 2.5]\nnormal = [0, -1, 0]\n"
+                          "[[wall]]\nname = \"right\"\nat = [0, -2.5]\nnormal = [0, 1, 0]\n",
+                      "s.toml");
+  tell_of(scene);
+  report_.nodes_at_start = report_.nodes_at_end = scene.setup.model.node_position;
+  const std::string html = page();
+  const std::regex wall(
+      "<line x1=\"(.*?)\" y1=\"(.*?)\" x2=\"(.*?)\" y2=\"(.*?)\" stroke=\"#222\" stroke-width=\"5\"/>");
+  int lines = 0;
+  for (std::sregex_iterator line(html.begin(), html.end(), wall), end; line != end; ++line, ++lines)
+    for (int k = 1; k <= 4; ++k) {
+      EXPECT_GE(std::stod((*line)[k]), 0) << line->str();
+      EXPECT_LE(std::stod((*line)[k]), k % 2 == 1 ? 720 : 620) << line->str();
+    }
+  EXPECT_EQ(lines, 5);  // the one with the door is in two parts
 }
 
 // Whatever the peak of the floor: a scale needs more than its zero.

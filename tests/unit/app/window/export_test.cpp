@@ -82,6 +82,36 @@ TEST_F(ExportDialogTest, a_picture_is_seen_from_where_the_window_sees_it) {
   EXPECT_EQ(pictures[0], pictures[2]);
 }
 
+TEST_F(ExportDialogTest, a_picture_that_is_narrower_than_the_view_shows_all_that_the_view_shows) {
+  open_rocking();
+  run_to(0.1);
+  open_export(ExportDialog::What::picture);
+  set_path("tall.png");
+  dialog().size[0] = 160;
+  dialog().size[1] = 320;
+  start();
+  EXPECT_EQ(export_failure(), "");
+  const std::vector<std::string>& words = exports().all().back().words;
+  const std::string camera = *std::next(std::ranges::find(words, "--camera"));
+  const Viewer& viewer = shell_->session()->viewer();
+  render::Orbit picture = viewer.orbit();
+  ASSERT_EQ(std::sscanf(camera.c_str(), "%*f,%*f,%f", &picture.distance), 1) << camera;
+  const auto is_seen = [](const render::Orbit& orbit, float aspect, const Eigen::Vector3f& point) {
+    const render::Camera from = orbit.camera(aspect);
+    const Eigen::Vector4f at = from.projection * from.view * point.homogeneous();
+    return std::abs(at.x()) <= at.w() && std::abs(at.y()) <= at.w();
+  };
+  int seen = 0;
+  for (int k = 0; k < 11 * 11 * 11; ++k) {
+    const Eigen::Vector3f way = Eigen::Vector3f(k % 11, k / 11 % 11, k / 121).array() / 5 - 1;
+    const Eigen::Vector3f point = picture.middle + picture.size / 2 * way;
+    if (way.norm() > 1 || !is_seen(viewer.orbit(), viewer.aspect(), point)) continue;
+    ++seen;
+    EXPECT_TRUE(is_seen(picture, 0.5f, point)) << way.transpose();
+  }
+  EXPECT_GT(seen, 100);
+}
+
 TEST_F(ExportDialogTest, a_camera_that_follows_is_where_the_window_has_it) {
   open_rocking();
   press('T');

@@ -1,4 +1,5 @@
 // What one sees, exports and takes along into another scene agrees.
+#include "app/window/status_line.h"
 #include "unit/app/shell_fixture.h"
 
 namespace topple::app {
@@ -65,6 +66,20 @@ TEST_F(SeenTest, back_to_the_start_goes_on_if_it_was_running) {
   ASSERT_TRUE(until([&] { return player().history().branches.size() == 3 && ready(); }));
   EXPECT_FALSE(player().playing());
   EXPECT_EQ(player().time(), 0);
+}
+
+TEST_F(SeenTest, back_at_the_start_the_status_names_the_branch_that_runs_and_the_one_that_was_left) {
+  open_rocking();
+  const std::string paused = status_in_words(player());
+  run_to(0.1);
+  player().edit({Edit::Key::amplitude, 0, Vec3(900 * k_gal, 0, 0)});
+  press('R');
+  ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && ready(); }));
+  EXPECT_EQ(status_in_words(player()),
+            "Back at the start, with the sliders as they are. Space runs branch 1; the run so far is kept as "
+            "branch 0.");
+  run_to(0.1);
+  EXPECT_EQ(status_in_words(player()), paused);
 }
 
 // As with a finger that stays where *Next* was: it takes every step, whatever is written of it.

@@ -1,6 +1,7 @@
 // The window's content off screen, with mouse and keyboard fed by hand.
 #include "app/window/viewer.h"
 
+#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -10,6 +11,7 @@
 #include <future>
 #include <mutex>
 
+#include "app/picture/body_colour.h"
 #include "solver/io/edit/scene_save.h"
 #include "unit/app/live.h"
 #include "unit/app/mouse.h"
@@ -331,6 +333,28 @@ TEST_F(ViewerTest, a_branch_shown_at_the_same_instant_is_drawn_with_its_own_pale
   player_->scrub(0.5);
   ASSERT_EQ(player_->ghost_branch(), 1);
   EXPECT_EQ(scene(), beside_its_like);
+}
+
+// Seven, of which the first and the last would have one colour; the second tilts least.
+TEST_F(ViewerTest, a_body_has_one_colour_in_the_timeline_whichever_others_tilt_more) {
+  std::string text = "topple = 1\n[run]\nduration = 1\nsettle = false\nwant = [\"motion\"]\n[floor]\n";
+  const double tilts[] = {3, 0, 1, 1, 1, 1, 5};
+  for (int b = 0; b < 7; ++b)
+    text += fmt::format(
+        "[[block]]\nname = \"{}\"\nsize = [0.4, 0.4, 0.8]\nmass = 50\nat = [0, {}]\ntilt = \"{} deg\"\n", b,
+        2 * b, tilts[b]);
+  start(&topple::Run::advance, text);
+  player_->play();
+  ASSERT_TRUE(until([&] { return player_->way().size() > 1; }));
+  const auto is_drawn = [](std::size_t body) {
+    const auto& [red, green, blue] = body_colour(body);
+    const auto& vertices = ImGui::FindWindowByName("timeline")->DrawList->VtxBuffer;
+    return std::any_of(
+        vertices.begin(), vertices.end(),
+        [colour = IM_COL32(red, green, blue, 255)](const ImDrawVert& v) { return v.col == colour; });
+  };
+  for (const std::size_t body : {2, 3, 4, 5, 6}) EXPECT_TRUE(is_drawn(body)) << body;
+  EXPECT_FALSE(is_drawn(1));
 }
 
 // The beginning is the nearest to the lower left corner, the end to the right of the upper edge, and the knee

@@ -166,9 +166,8 @@ class WindowText : public ::testing::TestWithParam<Look> {
     window_language() = Language::english;
     window_is_dark() = false;
   }
-  void start() {
+  void start(const std::shared_ptr<const io::Scene>& scene = live_scene()) {
     const Look& look = GetParam();
-    const auto scene = live_scene();
     run_.emplace(LiveSource{.scene = scene, .recording = {}, .output = {}});
     player_.emplace(scene, *run_);
     stage_.emplace(render::off_screen());
@@ -333,8 +332,17 @@ TEST_P(WindowText, is_read_in_every_panel) {
   check("body");
   player_->scrub(0.4);
   check("past");
+  viewer_->press({'R', false, false});
+  ASSERT_TRUE(eventually([this] { frame(); },
+                         [this] { return player_->history().branches.size() == 2 && player_->can_edit(); }));
+  check("restarted");
   viewer_->press({render::key::f1, false, false});
   check("keys");
+}
+
+TEST_P(WindowText, is_read_beside_a_load_path) {
+  start(std::make_shared<const io::Scene>(io::load_scene("portal-pushover")));
+  check("loads");
 }
 
 TEST_P(WindowText, is_read_in_studies_of_the_present_scene) {

@@ -198,6 +198,43 @@ TEST(BlockMotion, slides_by_coulombs_law_on_a_floor_that_is_pushed) {
   }
 }
 
+// As above, however short the steps that a tolerance asks for.
+TEST(BlockMotion, a_rectangle_pushes_from_its_start_to_its_end) {
+  for (const double tolerance : {1e-3, 1e-6, 1e-8}) {
+    topple::Setup setup = on_floor({box(Vec3(0.6, 0.4, 0.1), 20)});
+    setup.parameters.contact.friction = 0.3;
+    setup.parameters.contact.alpha *= 100;
+    setup.parameters.tolerance = tolerance;
+    Shake push;
+    push.kind = Shake::Kind::pulse;
+    push.shape = Shake::Shape::rectangle;
+    push.start = 0.1, push.amplitude = 5, push.duration = 0.2;
+    setup.parameters.shakes = {push};
+    setup.run.duration = 0.3;
+    topple::Run run(setup);
+    while (!run.over()) ASSERT_TRUE(run.advance().ok()) << tolerance;
+    EXPECT_NEAR(run.state().time, 0.3, 1e-9) << tolerance;
+    const double speed = (5 - 0.3 * k_g) * 0.2;
+    EXPECT_NEAR(std::abs(run.state().bodies[0].velocity.x()), speed, 1e-3 * speed) << tolerance;
+  }
+}
+
+// Thrown along the floor askew to its sides, with steps of its own: v^2/(2 mu g), but for the micrometres
+// that the springs of friction give way, and of which it leans forward meanwhile.
+TEST(BlockMotion, comes_to_rest_by_coulombs_law_and_stays_there) {
+  topple::Setup setup = on_floor({box(Vec3(0.3, 0.4, 0.5), 20)}, BodyModel::rigid);
+  setup.parameters.contact.friction = 0.4;
+  setup.starts[0].velocity = Vec3(0.5, 0.1, 0);
+  setup.run.settle = false;
+  setup.run.duration = 0.4;
+  topple::Run run(setup);
+  while (!run.over()) ASSERT_TRUE(run.advance().ok());
+  const double way = 0.26 / (2 * 0.4 * k_g);
+  const BodyOutcome& out = run.outcome().bodies()[0];
+  EXPECT_NEAR(out.peak_slide, way, 2e-3 * way);
+  EXPECT_NEAR(out.slide, out.peak_slide, 2e-5);
+}
+
 /// A held sheet of 2.5 m by 1 m that falls by `angle` towards +x, and a block on it that is turned as much.
 topple::Setup on_slope(double angle, double friction) {
   topple::Setup setup;

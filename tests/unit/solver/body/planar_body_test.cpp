@@ -15,9 +15,9 @@ namespace {
 
 constexpr double k_step = 1e-3;  // s
 
-/// A cabinet on its corners.
 struct Cabinet {
   double tilt = 0, yaw = 0, cg_height = 1.05, friction = 0.6;
+  CabinetSpec::Base base = CabinetSpec::Base::corners;
   BodyModel model = BodyModel::planar;
 };
 
@@ -25,7 +25,7 @@ topple::Setup alone(const Cabinet& of = {}) {
   topple::Setup setup;
   setup.model = steel_model();
   CabinetSpec spec = tall_cabinet();
-  spec.base = CabinetSpec::Base::corners;
+  spec.base = of.base;
   spec.tilt = of.tilt;
   spec.yaw = of.yaw;
   spec.cg_height = of.cg_height;
@@ -197,6 +197,32 @@ TEST(PlanarBody, floor_bears_the_weight_at_rest_and_the_edge_when_it_rocks) {
   for (const ContactForce& f : rocks.contacts()) force += f.force;
   force.z() -= weight;
   EXPECT_LT((force - state.bodies[0].force).norm(), 1e-9 * weight);
+}
+
+// A base with points between its edges, pushed towards one of them by the floor, hard enough to lift the
+// other.
+TEST(PlanarBody, what_stands_on_more_than_two_edges_goes_on_as_a_rigid_body_without_a_jump) {
+  for (const double q : {0.7, 1., 1.5})
+    for (const double push : {0., 0.5, 1.2, 1.6}) {
+      topple::Setup setup = with_shakes(alone({.base = CabinetSpec::Base::edges}),
+                                        {pulse(push, Shake::Shape::rectangle, 0.01, 1)});
+      setup.parameters.contact.q = q;
+      topple::Run run(setup);
+      while (run.time() < 0.1) ASSERT_TRUE(run.advance().ok());
+      ASSERT_EQ(level_of(run), ModelLevel::planar);
+      const double weight = setup.model.bodies[0].mass * k_g;
+      double sum = 0;
+      std::vector<double> before;
+      for (const ContactForce& f : run.contacts()) before.push_back(f.normal), sum += f.normal;
+      EXPECT_GE(before.size(), push > 0 ? 6u : 9u);
+      EXPECT_NEAR(sum, weight, 1e-9 * weight);
+      run.edit(set(Edit::Key::model, static_cast<double>(static_cast<int>(BodyModel::rigid))));
+      ASSERT_TRUE(run.advance().ok());
+      ASSERT_EQ(level_of(run), ModelLevel::rigid);
+      ASSERT_EQ(run.contacts().size(), before.size());
+      for (std::size_t k = 0; k < before.size(); ++k)
+        EXPECT_NEAR(run.contacts()[k].normal, before[k], 1e-4 * weight) << q << ", " << push << ", " << k;
+    }
 }
 
 TEST(PlanarBody, goes_on_from_any_step_bit_for_bit) {
