@@ -88,8 +88,10 @@ class Fixing {
       entry_.fail("body",
                   "\"" + body().name + "\" does not stand level on a base as deep as a stopper needs");
     const std::vector<int> leaning = stack();
+    const Vec3 pivot = x(*back);
+    const double most = std::asin(std::min(1., kind_.lift / depth));
     const auto room_of = [&](const std::vector<int>& bodies) {
-      return leaning_angle(bodies, wall, x(*back), std::asin(std::min(1., kind_.lift / depth)));
+      return leaning_angle(bodies, wall, pivot, most);
     };
     const double angle = room_of(leaning);
     for (const int b : leaning)
@@ -97,7 +99,7 @@ class Fixing {
         entry_.fail("body", "\"" + model().bodies[b].name + "\" touches \"" + wall.name +
                                 "\": a stopper leans it back, which takes a gap");
     for (const int b : leaning) {
-      setup_.starts[b].pivot = x(*back);
+      setup_.starts[b].pivot = pivot;
       setup_.starts[b].rotation = angle * wall.normal.cross(Vec3::UnitZ());
     }
     Wedge wedge{entry_.name(), body_, {}, depth * std::sin(angle)};

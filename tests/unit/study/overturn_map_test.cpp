@@ -260,7 +260,8 @@ TEST(OverturnMap, says_why_a_scene_is_not_planar) {
   EXPECT_EQ(why({"contact.alpha=50 kgf"}), "contacts are soft");
   EXPECT_EQ(why({"run.want=[\"stress\"]"}), "stresses are asked for");
   EXPECT_EQ(why({"cabinet.cabinet.base=edges"}), "");
-  EXPECT_EQ(why({"cabinet.cabinet.yaw=30 deg"}), "cabinet: it is not symmetric about the plane of its motion");
+  EXPECT_EQ(why({"cabinet.cabinet.yaw=30 deg"}),
+            "cabinet: it is not symmetric about the plane of its motion");
 }
 
 TEST(OverturnMap, what_was_not_run_is_open_in_every_result) {

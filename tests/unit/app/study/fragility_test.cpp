@@ -168,6 +168,17 @@ TEST_F(FragilityTest, bodies_that_a_run_of_the_scene_makes_finer_are_told) {
       << coarser;
   const std::string alike = said({"--set", "run.accuracy=0.01"});
   EXPECT_EQ(alike.find("a run of the scene has"), std::string::npos) << alike;
+  // a scene that wants stresses has them in a run, and what they come of
+  const std::string text = shelves_of_books(1), motion = "want = [\"motion\"]";
+  ASSERT_NE(text.find(motion), std::string::npos);
+  write_bytes("s.toml", std::string(text).replace(text.find(motion), motion.size(), ""));
+  const std::string wants = said({});
+  EXPECT_NE(
+      wants.find("shelf-0: rigid here, where motion alone is asked for, at run.accuracy = 0.05; a run of "
+                 "the scene has elastic, which may lift earlier, slide where this rocks, spring back from "
+                 "what it strikes, and"),
+      std::string::npos)
+      << wants;
   // where people are, how far pieces slide counts
   write_bytes("s.toml", shelves_of_books(1) + "[[place]]\nat = [3, 3]\n");
   const std::string as_run = said({});
