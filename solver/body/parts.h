@@ -68,13 +68,13 @@ class Parts {
   ReducedBody& reduced(const State& state, int body);
   BodySystem& alone(int body) { return *islands_.alone(body); }
   PlanarBody& planar(int body);
-  /// Of the parameters there are others from here on.
+  /// Before other parameters are given.
   void forget_parameters();
 
   /// Per element of the model, as the newest step or balance left them; of elastic bodies as
   /// Part::list_forces found them last; zero of bodies without stresses.
   std::vector<SectionForces> sections;
-  /// Of a body that has no stresses from here on.
+  /// Sets those of a body to zero: it has no stresses from here on.
   void clear_sections(int body);
 
  private:

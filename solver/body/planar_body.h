@@ -19,8 +19,7 @@ namespace topple {
 
 /// Estimated error of a hard floor in place of contacts of this law, as a share of the critical angle: 0
 /// where they are as stiff as those of scenes that name no alpha (contact_default.h), which stand for one,
-/// and the body stands on its edges alone: how points between them share a landing goes as 1/sqrt(alpha);
-/// else
+/// and no contact points lie between its edges, whose part of a landing depends on alpha; else
 ///   30 d h/2b^2,  d = L (W/(n alpha))^(1/q), the greater of both edges
 /// d: m, to which the body sinks on an edge alone; n: contact points on it. A side lifts when the body leans
 /// by d/2b, which is d h/2b^2 of the critical angle, and that grows while it rocks: 10 to 50 times until it
@@ -33,13 +32,12 @@ double hard_floor_error(const Model& model, int body, const planar::PlanarCase& 
 std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,
                                 int body, bool asked);
 
-/// One body: its block under the parameters seen first since they were forgotten, and where its next step
-/// leads.
+/// One body: its block, and where its next step leads. Parameters are looked at once, until they are
+/// forgotten: who gives others calls forget_parameters() before.
 class PlanarBody {
  public:
   PlanarBody(const Model& model, int body) : model_(model), body_(body) {}
 
-  /// The next ones that are given are others.
   void forget_parameters() { known_ = false; }
 
   /// The block of a body that moves so, or none; `asked`: walls, other bodies and the law's alpha do not

@@ -229,6 +229,41 @@ Shake sweep(double first, double last, double duration) {
   return s;
 }
 
+Shake rectangle(double amplitude, double start, double duration) {
+  Shake s;
+  s.kind = Shake::Kind::pulse;
+  s.shape = Shake::Shape::rectangle;
+  s.amplitude = amplitude, s.start = start, s.duration = duration;
+  return s;
+}
+
+// 0.02 + 0.04 - 0.02 and 0.1 + 0.2 are rounded below and above what they stand for.
+TEST(Excitation, a_rectangle_jumps_at_its_ends_however_times_are_rounded) {
+  for (const auto& [start, duration] : {std::pair(0.02, 0.04), {0.1, 0.2}, {0., 0.3}}) {
+    const std::vector<Shake> shakes{rectangle(5, start, duration)};
+    for (const double rounded : {-1e-12, 0., 1e-12}) {
+      const double begins = start + rounded, ends = start + duration + rounded;
+      EXPECT_TRUE(acceleration_jumps(shakes, begins) && acceleration_jumps(shakes, ends)) << start;
+      EXPECT_EQ(acceleration_until(shakes, begins).x(), 0) << start;
+      EXPECT_EQ(acceleration_from(shakes, begins).x(), 5) << start;
+      EXPECT_EQ(acceleration_until(shakes, ends).x(), 5) << start;
+      EXPECT_EQ(acceleration_from(shakes, ends).x(), 0) << start;
+    }
+    EXPECT_FALSE(acceleration_jumps(shakes, start + duration / 2)) << start;
+  }
+  Shake sine = shake_of(3, 2);
+  sine.start = 0.5, sine.cycles = 4;
+  EXPECT_FALSE(acceleration_jumps({sine}, 0.5) || acceleration_jumps({sine}, 2.5));
+}
+
+TEST(Excitation, a_rectangle_that_follows_another_takes_over_from_it) {
+  const Shake first = rectangle(5, 0.1, 0.2), second = rectangle(2, 0.3, 0.2);
+  for (const std::vector<Shake>& shakes : {std::vector{first, second}, {second, first}}) {
+    EXPECT_EQ(acceleration_until(shakes, 0.3).x(), 5);
+    EXPECT_EQ(acceleration_from(shakes, 0.3).x(), 2);
+  }
+}
+
 TEST(Excitation, sweep_takes_as_long_for_each_octave) {
   const Shake s = sweep(0.25, 8, 10);  // five octaves, 2 s each
   for (int octave = 0; octave <= 5; ++octave)
