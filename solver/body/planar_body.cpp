@@ -133,7 +133,7 @@ double hard_floor_error(const Model& model, int body, const PlanarCase& found, c
     const double d = sinking(law, block.mass * block.gravity, edge, model, found.floor);
     greatest = std::max(greatest, k_growth * d * block.height / (2 * b * b));
   }
-  return base.size() < 3 && hard && law.alpha >= k_softer * *hard ? 0 : greatest;
+  return hard && law.alpha >= k_softer * *hard ? 0 : greatest;
 }
 
 std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,
@@ -170,7 +170,7 @@ const PlanarCase* PlanarBody::block(const Parameters& parameters, const Vec3& al
 }
 
 planar::Situation PlanarBody::situation(const StepInputs& now) const {
-  return {case_.block, now.floor.dot(case_.along), case_.block.gravity + now.floor.z(), step_.leg.known};
+  return {case_.block, now.floor.dot(case_.along), case_.block.gravity + now.floor.z(), 0, step_.leg.known};
 }
 
 bool PlanarBody::near_wall(const planar::State& motion, double h, double push) const {

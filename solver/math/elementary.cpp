@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-15";
+  return "topple-16";
 }
 
 }  // namespace topple

@@ -2,11 +2,18 @@
 // horizontal, z up, both seen from the floor. A tilt is positive towards +x.
 #pragma once
 
+#include <memory>
+
 #include "solver/math/elementary.h"
 
 namespace topple::planar {
 
+class SprungBase;
+
 enum class Side { left, right };  ///< towards -x, +x
+inline Side other(Side side) {
+  return side == Side::right ? Side::left : Side::right;
+}
 
 /// A flat base with an edge on either side and a centre of gravity above the floor.
 struct Block {
@@ -20,12 +27,10 @@ struct Block {
   /// Factor on the rate that a block without slip keeps at an impact of its base by Housner's condition
   /// (transition.h); 0: comes to rest on it.
   double restitution = 1;
-  /// Further factors, of landings on either edge (landing.h).
-  double left_landing = 1, right_landing = 1;
-  double gravity = 9.80665;  ///< m/s^2
+  double gravity = 9.80665;                  ///< m/s^2
+  std::shared_ptr<const SprungBase> sprung;  ///< where points lie between its edges (sprung_base.h)
 
   double edge(Side side) const { return side == Side::right ? right : -left; }
-  double landing(Side side) const { return side == Side::right ? right_landing : left_landing; }
   double inertia_over_mass() const { return inertia / mass; }
 };
 

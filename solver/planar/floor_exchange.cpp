@@ -6,11 +6,12 @@
 namespace topple::planar {
 namespace {
 
-/// Integral of a product over the step, up to the degree of the series, beyond which they know nothing.
-double integral(const Series<double>& a, const Series<double>& b, double length) {
-  const Series<double>&high = a.degree < b.degree ? b : a, &low = a.degree < b.degree ? a : b;
+/// Integral of a product over the step, up to the degree to which the velocity is known.
+double integral(const Series<double>& a, const Series<double>& velocity, double length) {
+  const bool shorter = a.degree < velocity.degree;
+  const Series<double>&high = shorter ? velocity : a, &low = shorter ? a : velocity;
   double sum = 0, power = length;
-  for (int i = 0; i <= high.degree; ++i, power *= length)
+  for (int i = 0; i <= velocity.degree; ++i, power *= length)
     sum += power * k_reciprocal[static_cast<std::size_t>(i + 1)] * product_term(high, low, i, low.degree);
   return sum;
 }
@@ -58,8 +59,14 @@ void add_exchange(const Block& block, const State& before, const Step& step, con
   const Turned &at_start = step.leg.known_at_start, &at_end = step.leg.known;
   if (before.undecided || event != Event::none) {
     const State end = state_within(step, step.start.time + step.length);
-    sum.impact += kinetic_energy(block, before, at_start) - kinetic_energy(block, step.start, at_start) +
-                  kinetic_energy(block, end, at_end) - kinetic_energy(block, after, at_end);
+    // at a lift from the floor, which had bent the springs
+    const auto exchange = [&](const State& from, const State& to, const Turned& known) {
+      const double gain = kinetic_energy(block, to, known) - kinetic_energy(block, from, known);
+      const bool lifts = from.mode == Mode::rest && to.mode == Mode::rock;
+      (lifts ? sum.input : sum.impact) += lifts ? gain : -gain;
+    };
+    exchange(before, step.start, at_start);
+    exchange(end, after, at_end);
   }
   sum.gravity += block.gravity *
                  (centre_of_gravity(block, after, at_end).z - centre_of_gravity(block, before, at_start).z);

@@ -160,9 +160,11 @@ PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& s
       {blocks, step.start, s, of_legs([](const Leg& leg) { return leg.controls->last_tilt; })}, step.guards);
   const P first = first_guard(step, truncation.greatest() + 2);
   after = states_after(step, step.length);
-  P horizontal(0), vertical(0);
-  if (bits(P(0) <= first) != 0)
+  P horizontal(0), vertical(0), growth(0);
+  if (bits(P(0) <= first) != 0) {
     horizontal = s.horizontal.at(step.length), vertical = s.vertical.at(step.length);
+    growth = s.horizontal.slope_at(step.length);
+  }
   const elementary::SinCosOf<P> turned =
       elementary::sin_cos_of_lanes(pack_of<P>([&](int k) { return of_lane(after, k).tilt; }));
 
@@ -183,8 +185,9 @@ PerLane<P, Event> finish(const PerLane<P, Leg*>& legs, int count, PackStep<P>& s
     if (leg.without_progress > k_most_without_progress) return Event::stalled;
     const Guard<P>& guard = step.guards.guard[static_cast<std::size_t>(fallen)];
     const State before = state;
-    state = guard.next({*leg.block, of_lane(horizontal, k), of_lane(vertical, k), leg.known}, before,
-                       of_lane(guard.side, k));
+    state =
+        guard.next({*leg.block, of_lane(horizontal, k), of_lane(vertical, k), of_lane(growth, k), leg.known},
+                   before, of_lane(guard.side, k));
     return event_of(guard.event, before, state);
   };
   PerLane<P, Event> events{};

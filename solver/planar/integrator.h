@@ -26,7 +26,9 @@ struct Leg {
   int without_progress = 0;             ///< events in a row that came at once
   Turned known, known_at_start;         ///< of the start's tilt; the first from finish() on of the end's
 
-  Situation situation() const { return {*block, horizontal[0], vertical[0], known}; }  ///< at the start
+  Situation situation() const {  ///< at the start
+    return {*block, horizontal[0], vertical[0], horizontal.or_zero(1), known};
+  }
 };
 /// To `until`. False: `start` rests until `end`, several lines of a record that cannot wake it at once.
 /// Block and controls must outlive the leg.

@@ -158,8 +158,9 @@ void set_block(Candidate& c) {
   block.restitution = c.body.restitution;
   block.gravity = -c.parameters.gravity.z();
   const std::vector<BaseLine> base = base_lines(c.model, c.index, found.along);
-  block.left_landing = landing_factor(block, Side::left, base, law.q);
-  block.right_landing = landing_factor(block, Side::right, base, law.q);
+  if (base.size() > 2)
+    block.sprung = std::make_shared<SprungBase>(
+        block, base, law, contact_length(c.base_point(c.body.base_points.front()), *c.floor));
   found.bounces = law.restitution > 0;
   found.floor = static_cast<int>(c.floor - c.model.planes.data());
   found.origin = {centre.x(), centre.y(), c.floor->point.z() + c.width / 2};

@@ -11,7 +11,7 @@
 #include "solver/model/model.h"
 #include "solver/model/parameters.h"
 #include "solver/planar/integrator.h"
-#include "solver/planar/landing.h"
+#include "solver/planar/sprung_base.h"
 
 namespace topple::planar {
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/planar/sprung_base.h"
+
 namespace topple::planar {
 namespace {
 
@@ -11,9 +13,6 @@ constexpr double k_rounding = 1e-12;  // relative, of an energy
 
 int sign(double a) {
   return (a > 0) - (a < 0);
-}
-Side other(Side side) {
-  return side == Side::right ? Side::left : Side::right;
 }
 int towards(Side side) {
   return side == Side::right ? 1 : -1;
@@ -147,7 +146,7 @@ AfterImpact impact_about_edge(const Block& block, const Motion& v, double rate, 
     return x_velocity * x_velocity + z_velocity * z_velocity + block.inertia_over_mass() * turn * turn;
   };
   const double most = energy(v.x_velocity, v.z_velocity, rate) * (1 + k_rounding),
-               landing = block.landing(side);
+               landing = block.sprung ? block.sprung->landing_factor(block, side, rate) : 1;
   for (const double factor : {block.restitution * landing, landing}) {
     const AfterImpact out = impact_about_edge(block, v, rate, side, factor);
     if (factor <= 1 || energy(out.x_velocity, out.z_velocity, out.rate) <= most) return out;
@@ -193,12 +192,18 @@ std::string_view word(Event event) {
 }
 
 double greatest_restitution(const Block& block) {
-  const double about_centre = block.inertia_over_mass() + block.height * block.height;
-  const double kept =
-      (about_centre - block.left * block.right) * std::max(block.left_landing, block.right_landing);
+  const double about_centre = block.inertia_over_mass() + block.height * block.height,
+               kept = about_centre - block.left * block.right;
+  if (!(kept > 0)) return std::numeric_limits<double>::infinity();
   const auto about = [&](double u) { return about_centre + u * u; };
-  return kept > 0 ? std::sqrt(about(block.left) * about(block.right)) / kept
-                  : std::numeric_limits<double>::infinity();
+  double landing = 1;
+  if (block.sprung)
+    for (const Side side : {Side::left, Side::right}) {
+      const double from = block.edge(other(side));
+      const double rate = std::sqrt(0.75 * block.gravity / (block.height * about(from))) * std::abs(from);
+      landing = std::max(landing, block.sprung->landing_factor(block, side, rate));
+    }
+  return std::sqrt(about(block.left) * about(block.right)) / (kept * landing);
 }
 
 EdgeForces edge_forces(const Situation& now, const State& state, int slip) {
@@ -225,10 +230,14 @@ State decided(const Situation& now, const State& state) {
 }
 
 State lifted(const Situation& now, const State& state, Side side) {
-  const State still = touching(now.block, state, Mode::rock, side, 0);
+  State still = touching(now.block, state, Mode::rock, side, 0);
   const EdgeForces f = edge_forces(now, still, 0);
-  if (in_static_cone(now.block, f.tangential, f.normal)) return still;
-  return slip_on_base(now, state, -sign(f.tangential));
+  if (!in_static_cone(now.block, f.tangential, f.normal))
+    return slip_on_base(now, state, -sign(f.tangential));
+  const SprungBase* const base = now.block.sprung.get();
+  if (base)
+    still.rate = towards(side) * base->lift_rate(now.block, side, now.horizontal, now.growth, now.vertical);
+  return still;
 }
 
 State slipping_base(const Situation& now, const State& state, Side) {

@@ -5,8 +5,8 @@
 //   edge on the floor     v+ = v + W j, w+ = 0, with Moreau's complementarity in the velocities after
 //   base on the floor     the impulse keeps the base flat if its resultant lies within the base; else the
 //                         block goes on about the edge beyond which that would lie. Without slip the rate is
-//                         by angular momentum about the edge, times the restitution factor r and that of
-//                         points between the edges (landing.h), here one:
+//                         by angular momentum about the edge, times the restitution factor r and that of a
+//                         sprung base (sprung_base.h), here one:
 //                         th'+ = r (k^2 th' + h vx + u vz)/(k^2 + h^2 + u^2), v of the centre of gravity
 //                         (Housner: r (k^2 + h^2 - l r)/(k^2 + h^2 + u^2) th')
 // A slip that would press the edge on the floor ever harder (Painleve: 1 + X E/k^2, equations.h, not above
@@ -47,6 +47,7 @@ struct Situation {
   const Block& block;
   double horizontal;  ///< acceleration of the floor, m/s^2
   double vertical;    ///< gravity plus acceleration of the floor, m/s^2
+  double growth = 0;  ///< of `horizontal`, m/s^3
   Turned known = {};  ///< of the state's tilt, where that has been asked for before
 
   Lever lever(Side side, double tilt) const { return planar::lever(block, side, known.at(tilt)); }
@@ -65,8 +66,9 @@ State decided(const Situation& now, const State& state);
 
 /// The restitution factor up to which no impact of a rocking block without slip gains energy,
 ///   sqrt((k^2 + h^2 + l^2)(k^2 + h^2 + r^2))/(k^2 + h^2 - l r);
-/// infinite where Housner's condition lets none rock on. With a factor above 1 another impact, after a flight
-/// or with slip, that would gain energy by it is Housner's.
+/// on a sprung base over the factor of a landing from half of the critical angle; infinite where Housner's
+/// condition lets none rock on. With a factor above 1 another impact, after a flight or with slip, that would
+/// gain energy by it is Housner's.
 double greatest_restitution(const Block& block);
 
 /// What follows an event. `side`: the edge concerned.

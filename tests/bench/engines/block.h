@@ -62,6 +62,11 @@ Engine mujoco_engine();
 Engine bullet_engine();
 Engine ode_engine();
 
+/// A cabinet of the block's size and mass on `base = "edges"`, every contact key but friction left out, with
+/// more lines in it.
+Setting cabinet_on_edges(double step, const std::string& more);
+Setting ode_box(double step);  ///< none of the quick steps
+
 /// Steps of `h` from case.begin(): `step(a)` takes one under the floor acceleration a, m/s^2, of its middle.
 /// Settles before it returns.
 Simulation stepped(const Case& c, double h, std::function<bool(double)> step, std::function<double()> tilt);

@@ -4,6 +4,7 @@ find_package(fmt REQUIRED)
 add_executable(engines_bench EXCLUDE_FROM_ALL
   ${CMAKE_CURRENT_LIST_DIR}/block.cpp
   ${CMAKE_CURRENT_LIST_DIR}/chart.cpp
+  ${CMAKE_CURRENT_LIST_DIR}/edges.cpp
   ${CMAKE_CURRENT_LIST_DIR}/main.cpp
   ${CMAKE_CURRENT_LIST_DIR}/results.cpp
   ${CMAKE_CURRENT_LIST_DIR}/room_scenes.cpp

@@ -1,7 +1,7 @@
-// engines_bench DIR [rooms [ROOM] | tosses DATA]: the same rocking block in every engine that was found when
-// this was built, then rooms of many boxes in topple and MuJoCo; or only the rooms, or one of them, or the
-// measured tosses in a folder of data (topple validate tosses). Writes DIR/engines.csv, .svg and .png and
-// DIR/rooms.csv, or DIR/tosses.csv, and prints the tables.
+// engines_bench DIR [edges | rooms [ROOM] | tosses DATA]: the same rocking block in every engine that was
+// found when this was built, a cabinet on edges beside ODE's box, then rooms of many boxes in topple and
+// MuJoCo; or only one of these, or one room, or the measured tosses in a folder of data (topple validate
+// tosses). Writes DIR/engines.csv, .svg and .png and DIR/rooms.csv, or DIR/tosses.csv, and prints the tables.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/engines/edges.h"
 #include "bench/engines/files.h"
 #include "bench/engines/results.h"
 #include "bench/engines/rooms.h"
@@ -77,10 +78,11 @@ void run_block(const std::filesystem::path& folder) {
 }  // namespace
 
 int main(int count, char** arguments) {
-  const bool only_rooms = count > 2 && std::string(arguments[2]) == "rooms";
-  const bool only_tosses = count == 4 && std::string(arguments[2]) == "tosses";
-  if (count < 2 || count > 4 || (count > 2 && !only_rooms && !only_tosses)) {
-    fmt::print(stderr, "usage: engines_bench DIR [rooms [ROOM] | tosses DATA]\n");
+  const std::string only = count > 2 ? arguments[2] : "";
+  const bool only_edges = only == "edges" && count == 3, only_rooms = only == "rooms",
+             only_tosses = only == "tosses" && count == 4;
+  if (count < 2 || count > 4 || (count > 2 && !only_edges && !only_rooms && !only_tosses)) {
+    fmt::print(stderr, "usage: engines_bench DIR [edges | rooms [ROOM] | tosses DATA]\n");
     return 2;
   }
   try {
@@ -90,8 +92,9 @@ int main(int count, char** arguments) {
       run_tosses(folder, arguments[3]);
       return 0;
     }
-    if (!only_rooms) run_block(folder);
-    run_rooms(folder, count > 3 ? arguments[3] : "");
+    if (only.empty()) run_block(folder);
+    if (!only_rooms) run_edges();
+    if (!only_edges) run_rooms(folder, count > 3 ? arguments[3] : "");
   } catch (const std::exception& error) {
     fmt::print(stderr, "engines_bench: {}\n", error.what());
     return 1;

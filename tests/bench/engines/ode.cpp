@@ -72,9 +72,7 @@ class World {
   dBodyID body_ = dBodyCreate(world_);
 };
 
-}  // namespace
-
-Engine ode_engine() {
+Simulation start(const Case& c, double h, const Options& options) {
   struct Library {
     Library() {
       dInitODE2(0);
@@ -84,6 +82,18 @@ Engine ode_engine() {
     ~Library() { dCloseODE(); }
   };
   static const Library library;
+  auto world = std::make_shared<World>(c, h, options);
+  return stepped(
+      c, h, [world](double floor) { return world->step(floor); }, [world] { return world->tilt(); });
+}
+
+}  // namespace
+
+Setting ode_box(double step) {
+  return {step, "", [=](const Case& c) { return start(c, step, {0, 0.2, 1e-6, 1e-4}); }};
+}
+
+Engine ode_engine() {
   Engine engine{"ODE", dODE_VERSION, "double precision, box on a plane", {}};
   for (const int iterations : {0, 20, 50})
     for (const double erp : {0.01, 0.2, 0.8})
@@ -96,12 +106,7 @@ Engine ode_engine() {
                  fmt::format("{}, ERP {:g}, CFM {:g}, surface layer {:g} mm",
                              iterations > 0 ? fmt::format("quick step of {}", iterations) : "step", erp, cfm,
                              1e3 * layer),
-                 [=](const Case& c) {
-                   auto world = std::make_shared<World>(c, h, options);
-                   return stepped(
-                       c, h, [world](double floor) { return world->step(floor); },
-                       [world] { return world->tilt(); });
-                 }});
+                 [=](const Case& c) { return start(c, h, options); }});
           }
   return engine;
 }

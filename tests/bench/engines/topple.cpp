@@ -54,14 +54,23 @@ std::string scene_text(const Case& c, const Options& options) {
   return text;
 }
 
+std::string edges_text(const Case& c, double step, const std::string& more) {
+  return fmt::format(
+      "topple = 1\n[run]\nduration = 100\ngravity = [0, 0, {}]\ntime_step = {}\nwant = [\"motion\"]\n"
+      "[[shake]]\ntype = \"sine\"\namplitude = {}\nfrequency = {}\n[contact]\nfriction = {}\n[floor]\n"
+      "[[cabinet]]\nsize = [{}, {}, {}]\nmass = {}\ninertia = \"solid\"\nsection = \"box 30x1\"\n"
+      "material = \"steel\"\nshelves = 3\npanel_thickness = 0.001\nbase = \"edges\"\n{}",
+      -k_gravity, step, c.amplitude, c.frequency, k_friction, k_size[0], k_size[1], k_size[2], k_mass, more);
+}
+
 struct World {
   explicit World(const std::string& text) : setup(io::parse_scene(text, "block").setup) {}
   Setup setup;
   Run run{setup};
 };
 
-Simulation start(const Case& c, const Options& options) {
-  auto world = std::make_shared<World>(scene_text(c, options));
+Simulation start(const std::string& text) {
+  auto world = std::make_shared<World>(text);
   return {[world] {
             if (!world->run.status().ok() || !world->run.advance().ok()) return std::nan("");
             return world->run.outcome().bodies()[0].time;  // state() would place the nodes
@@ -141,13 +150,18 @@ Engine topple_engine() {
                                 fmt::format(", normal_speed {:g} mm/s", 1e3 * speed);
         const auto add = [&](double step, double tolerance, const std::string& more) {
           const Options options{model, step, tolerance, alpha, speed, radius};
-          engine.grid.push_back({step, how + more, [=](const Case& c) { return start(c, options); }});
+          engine.grid.push_back(
+              {step, how + more, [=](const Case& c) { return start(scene_text(c, options)); }});
         };
         for (const double h : k_steps) add(h, 0, "");
         for (const double tolerance : {1e-2, 1e-3, 1e-4})
           add(0, tolerance, fmt::format(", tolerance {:g}", tolerance));
       }
   return engine;
+}
+
+Setting cabinet_on_edges(double step, const std::string& more) {
+  return {step, more, [=](const Case& c) { return start(edges_text(c, step, more)); }};
 }
 
 }  // namespace topple::bench

@@ -90,6 +90,8 @@ std::vector<Case> cases() {
       {"sine", with_shakes(alone(), {sine(4, 1)})},
       {"sine along and up", with_shakes(alone({.yaw = turn}),
                                         {sine(5, 1, Vec3(std::cos(turn) * 0.8, std::sin(turn) * 0.8, 0.6))})},
+      {"sine, points between the edges",
+       with_shakes(alone({.base = CabinetSpec::Base::edges}), {sine(4, 1)})},
       {"slides", with_shakes(alone({.cg_height = 0.7, .friction = 0.2}), {sine(5, 1)})},
       {"slides and rocks", with_shakes(alone({.friction = 0.19}), {sine(8, 2)})},
       {"floor's velocity jumps", with_shakes(alone({.friction = 0.5}), {jump})},
@@ -538,10 +540,13 @@ TEST(PlanarBody, estimate_bounds_what_soft_contacts_change) {
       EXPECT_LT(most, estimate) << kgf << " kgf, " << over;
       EXPECT_GT(most, estimate / 3) << kgf << " kgf, " << over;
     }
-  topple::Setup hard = alone();
-  const auto block = planar::planar_case(hard.model, hard.parameters, hard.starts, 0);
-  hard.parameters.contact.alpha = *rigid_alpha(hard.model, hard.parameters.contact, hard.parameters.gravity);
-  EXPECT_EQ(hard_floor_error(hard.model, 0, *block, hard.parameters.contact), 0);
+  for (const auto base : {CabinetSpec::Base::corners, CabinetSpec::Base::edges}) {
+    topple::Setup hard = alone({.base = base});
+    const auto block = planar::planar_case(hard.model, hard.parameters, hard.starts, 0);
+    hard.parameters.contact.alpha =
+        *rigid_alpha(hard.model, hard.parameters.contact, hard.parameters.gravity);
+    EXPECT_EQ(hard_floor_error(hard.model, 0, *block, hard.parameters.contact), 0);
+  }
 }
 
 }  // namespace
