@@ -40,18 +40,35 @@ double tilt_share(const io::FrameRow& row, std::size_t body) {
   return row.body[body].tilt / (critical > 0 ? critical : k_pi / 2);
 }
 
-/// Of each piece of furniture over the run. Row by row: each is somewhere else in memory.
-std::vector<double> greatest_tilt_shares(const Player& player) {
-  std::vector<double> most(static_cast<std::size_t>(player.scene().setup.model.furniture_total()));
-  for (const RowPtr& row : player.way())
-    for (std::size_t b = 0; b < most.size(); ++b) most[b] = std::max(most[b], tilt_share(*row, b));
-  return most;
+/// Of each piece of furniture over the run, found row by row: each is somewhere else in memory.
+struct Tilts {
+  explicit Tilts(const Player& player);
+
+  bool shares = false;           ///< of the critical angle; else degrees: nothing falls by itself
+  std::vector<double> greatest;  ///< of a piece
+  std::size_t rows;
+  std::vector<double> shown;  ///< piece by piece; shares are cut
+};
+
+Tilts::Tilts(const Player& player)
+    : greatest(static_cast<std::size_t>(player.scene().setup.model.furniture_total())),
+      rows(player.way().size()),
+      shown(greatest.size() * rows) {
+  for (std::size_t b = 0; b < greatest.size(); ++b) shares |= critical_angle(player, b) > 0;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const io::FrameRow& row = *player.way()[i];
+    for (std::size_t b = 0; b < greatest.size(); ++b) {
+      const double tilt = shares ? tilt_share(row, b) : row.body[b].tilt * k_degrees;
+      greatest[b] = std::max(greatest[b], tilt);
+      shown[b * rows + i] = shares ? std::min(tilt, k_tilt_room) : tilt;
+    }
+  }
 }
 
 /// Those that tilt most over the run, of what they can, in their own order; one of each colour.
-std::vector<std::size_t> coloured_bodies(const std::vector<double>& greatest_shares) {
+std::vector<std::size_t> coloured_bodies(const Tilts& tilts) {
   std::vector<std::pair<double, std::size_t>> shares;
-  for (std::size_t b = 0; b < greatest_shares.size(); ++b) shares.emplace_back(-greatest_shares[b], b);
+  for (std::size_t b = 0; b < tilts.greatest.size(); ++b) shares.emplace_back(-tilts.greatest[b], b);
   std::ranges::sort(shares);
   std::vector<std::size_t> coloured;
   for (const auto& [share, b] : shares)
@@ -121,21 +138,13 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
 }
 
-void add_tilts(ImDrawList& list, Lane lane, const Player& player, const GhostCurves& ghost,
-               float label_left) {
-  const std::vector<RowPtr>& rows = player.way();
+void add_tilts(ImDrawList& list, Lane lane, const Player& player, const Tilts& tilts,
+               const GhostCurves& ghost, float label_left) {
   const auto& bodies = player.scene().setup.model.bodies;
-  const auto furniture = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
-  bool shares = false;  // else degrees: nothing falls by itself
-  for (std::size_t b = 0; b < furniture; ++b) shares |= critical_angle(player, b) > 0;
-  const auto tilt = [&player, shares](std::size_t b) -> Value {
-    if (!shares) return [b](const io::FrameRow& row) { return row.body[b].tilt * k_degrees; };
-    return [b](const io::FrameRow& row) { return std::min(tilt_share(row, b), k_tilt_room); };
-  };
-  const std::vector<double> greatest_shares = greatest_tilt_shares(player);
+  const std::size_t furniture = tilts.greatest.size();
+  const bool shares = tilts.shares;
   double most = 0;
-  for (std::size_t b = 0; b < furniture; ++b)
-    most = std::max(most, shares ? std::min(greatest_shares[b], k_tilt_room) : peak(rows, tilt(b)));
+  for (const double tilt : tilts.greatest) most = std::max(most, shares ? std::min(tilt, k_tilt_room) : tilt);
   lane.low = 0;
   lane.high = shares ? k_tilt_room : std::max(k_least_tilt, 1.1 * most);
   list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
@@ -149,16 +158,25 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, const GhostCur
     add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text,
              most < k_tilt_room ? say(k_critical_at_one) : say(k_critical_and_cut, k_tilt_room));
   }
-  const std::vector<std::size_t> coloured = coloured_bodies(greatest_shares);
+  const std::vector<std::size_t> coloured = coloured_bodies(tilts);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };
   for (const bool with_colour : {false, true})  // coloured ones lie on top
     for (std::size_t b = 0; b < furniture; ++b) {
       if (is_coloured(b) != with_colour) continue;
-      if (b < ghost.body.size() && ghost.body[b] >= 0)
-        add_curve(list, lane, ghost.way, tilt(static_cast<std::size_t>(ghost.body[b])), theme().ghost,
-                  k_thin_curve);
-      add_curve(list, lane, rows, tilt(b), with_colour ? line_colour(coloured, b) : theme().other,
-                with_colour ? k_thick_curve : k_thin_curve);
+      if (b < ghost.body.size() && ghost.body[b] >= 0) {
+        const auto other = static_cast<std::size_t>(ghost.body[b]);
+        add_curve(
+            list, lane, ghost.way,
+            [other, shares](const io::FrameRow& row) {
+              return shares ? std::min(tilt_share(row, other), k_tilt_room)
+                            : row.body[other].tilt * k_degrees;
+            },
+            theme().ghost, k_thin_curve);
+      }
+      const double* const shown = tilts.shown.data() + b * tilts.rows;
+      add_curve(
+          list, lane, player.way(), [shown](std::size_t i) { return shown[i]; },
+          with_colour ? line_colour(coloured, b) : theme().other, with_colour ? k_thick_curve : k_thin_curve);
     }
   const float room = lane.left - label_left - 4;
   float y = lane.top - 2;
@@ -293,7 +311,7 @@ void add_mark_key(ImDrawList& list, const Player& player, float x, float y, floa
 }
 
 /// Marks along the bottom of the tilt lane; the one under the mouse says what it is.
-void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
+void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const Tilts& tilts) {
   const float size = 0.28f * ImGui::GetTextLineHeight();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
@@ -309,7 +327,7 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player) {
       hovered += (told++ > 0 ? "\n" : "") + text();
   };
   const float y = lane.bottom + size + 2;
-  const std::vector<std::size_t> coloured = coloured_bodies(greatest_tilt_shares(player));
+  const std::vector<std::size_t> coloured = coloured_bodies(tilts);
   for (const io::RecordedEvent& event : player.events()) {
     const EventMark& mark = row_of(k_event_marks, event.event.kind);
     const ImU32 colour = line_colour(coloured, static_cast<std::size_t>(event.event.body));
@@ -358,7 +376,8 @@ void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost) {
     add_load_factor(list, upper, player.way(), label_left);
   else
     add_acceleration(list, upper, player.way(), label_left);
-  add_tilts(list, lower, player, ghost, label_left);
+  const Tilts tilts(player);
+  add_tilts(list, lower, player, tilts, ghost, label_left);
   add_axis(list, lower, player.scene().setup, label_left);
 
   const float x = lane.x(player.time());
@@ -374,7 +393,7 @@ void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost) {
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_LeftArrow))) player.step(-1);
     if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_RightArrow))) player.step(1);
   }
-  add_marks(list, lower, player);
+  add_marks(list, lower, player, tilts);
   add_mark_key(list, player, lane.left, box.top + box.height - 1.15f * line, lane.right);
   ImGui::End();
 }
