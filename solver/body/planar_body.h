@@ -18,8 +18,8 @@
 namespace topple {
 
 /// Estimated error of a hard floor in place of contacts of this law, as a share of the critical angle: 0
-/// where they are as stiff as those of scenes that name no alpha (contact_default.h), which stand for one,
-/// and no contact points lie between its edges, whose part of a landing depends on alpha; else
+/// where they are as stiff as those of scenes that name no alpha (contact_default.h), which stand for one;
+/// else
 ///   30 d h/2b^2,  d = L (W/(n alpha))^(1/q), the greater of both edges
 /// d: m, to which the body sinks on an edge alone; n: contact points on it. A side lifts when the body leans
 /// by d/2b, which is d h/2b^2 of the critical angle, and that grows while it rocks: 10 to 50 times until it

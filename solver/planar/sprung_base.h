@@ -1,6 +1,6 @@
 // The base of a block on its contacts while it is nearly upright. Where points lie between its edges they
 // change how it lifts and lands: it leans on them before it stands on an edge alone, and they take a part of
-// a landing. Small tilts, without slip and restitution; 1e-3 of what is returned.
+// a landing. For small tilts, without slip and restitution; good to a thousandth of what is returned.
 #pragma once
 
 #include <array>
@@ -24,6 +24,8 @@ struct SprungLine {
   double place, stiffness;
 };
 
+/// Two degrees of freedom, rise and turn, each landing and lift followed anew. It keeps the springs of the
+/// block for which it was made, which is to be handed to it.
 class SprungBase {
  public:
   /// `base`: from left to right, three lines at least. L: of Eq. 2, m.
