@@ -19,6 +19,7 @@
 #include "solver/body/body_pose.h"
 #include "solver/body/model_level.h"
 #include "solver/body/planar_body.h"
+#include "solver/contact/contact_default.h"
 #include "solver/contact/contact_law.h"
 #include "solver/frame/integrator.h"
 
@@ -157,7 +158,7 @@ ordered_json safe_closing_speed(const Run& run) {
   return number(least / 2 / p.time_step);
 }
 
-ordered_json contact(const Model& model, const ContactLaw& c) {
+ordered_json contact(const Model& model, const ContactLaw& c, const Vec3& gravity) {
   if (!can_touch(model)) return nullptr;
   const ContactLawTraits& law = traits(c);
   return {{"law", law.word},
@@ -166,7 +167,8 @@ ordered_json contact(const Model& model, const ContactLaw& c) {
           {"friction", number(c.friction)},
           {"restitution", law.has_restitution ? number(c.restitution) : nullptr},
           {"normal_speed_m_s", law.has_restitution ? number(c.normal_speed) : nullptr},
-          {"member_share", model.bodies.size() > 1 ? number(c.member_share) : ordered_json(nullptr)}};
+          {"member_share", model.bodies.size() > 1 ? number(c.member_share) : ordered_json(nullptr)},
+          {"stands_for_hard_floor", stands_for_hard_floor(model, c, gravity)}};
 }
 
 /// Of the balances found: a limit load, where the path goes beyond it.
@@ -240,7 +242,7 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   out["adaptive"] = p.adaptive && !is_static(run.setup());
   out["explicit_limit_s"] = number(run.stable_step());
   out["safe_closing_speed_m_s"] = safe_closing_speed(run);
-  out["contact"] = contact(run.setup().model, p.contact);
+  out["contact"] = contact(run.setup().model, p.contact, p.gravity);
   out["steps"] = state.step;
   out["rejected_steps"] = run.rejected_steps();
   out["newton_iterations"] = run.newton_iterations();

@@ -159,14 +159,15 @@ std::string integrators(const ordered_json& s) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-std::string allowed_error(const ordered_json& body, const ordered_json& change) {
-  const ordered_json& estimate = change["error_estimate"];
+std::string allowed_error(const ordered_json& s, const ordered_json& body, const ordered_json& change) {
+  const ordered_json &estimate = change["error_estimate"], &fell = body["overturn_time_s"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
+  if (!fell.is_null() && fell.get<double>() <= change["from_s"].get<double>()) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
   if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
-  // of a block the contacts that a hard floor stands for are in it, up to a landing
+  // of a block soft contacts are in it, up to a landing, but not those that stand for a hard floor
   const char* const until = change["model"] == "planar" ? " until it lands" : " until it lifts";
   const std::string bounds =
       may_strike
@@ -178,8 +179,11 @@ std::string allowed_error(const ordered_json& body, const ordered_json& change) 
   const double error = estimate.get<double>();
   const std::string off =
       error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error);
-  const char* const feet = change["model"] == "elastic" ? "but for friction at its feet " : "";
-  return fmt::format("; {}off from a frame by {}{}", feet, off, bounds);
+  const bool on_hard_floor = change["model"] == "planar" && s["contact"]["stands_for_hard_floor"] == true;
+  const char* const but = change["model"] == "elastic" ? "but for friction at its feet "
+                          : on_hard_floor              ? "but for how contacts give "
+                                                       : "";
+  return fmt::format("; {}off from a frame by {}{}", but, off, bounds);
 }
 
 // Of the model that a body begins with.
@@ -190,18 +194,18 @@ std::string not_planar(const ordered_json& body, const ordered_json& model) {
 }
 
 // Bodies that were computed alike share theirs.
-std::string model_lines(const ordered_json& bodies) {
+std::string model_lines(const ordered_json& s) {
   constexpr std::size_t few = 4;
   struct Alike {
     std::vector<std::string> models, names;
   };
   std::vector<Alike> all;
-  for (const auto& b : bodies) {
+  for (const auto& b : s["bodies"]) {
     std::vector<std::string> models;
     for (const auto& model : b["models"])
       models.push_back(fmt::format("{} from {} s ({}{}{})\n", model["model"].get<std::string>(),
                                    text(model["from_s"], "{:.3f}"), model["reason"].get<std::string>(),
-                                   not_planar(b, model), allowed_error(b, model)));
+                                   not_planar(b, model), allowed_error(s, b, model)));
     auto group = std::ranges::find(all, models, &Alike::models);
     if (group == all.end()) group = all.insert(all.end(), {std::move(models), {}});
     group->names.push_back(b["name"].get<std::string>());
@@ -368,7 +372,7 @@ std::string summary_table(const ordered_json& s) {
         b["peak_stress_Pa"].is_null() ? "-"
                                       : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>()));
   }
-  out += model_lines(s["bodies"]);
+  out += model_lines(s);
   for (const auto& b : s["bodies"])
     if (!b["overturned"].get<bool>() && !b["first_beyond_critical_s"].is_null())
       out += fmt::format("{}: leaned beyond its critical angle, first at {} {}, and came back\n",

@@ -252,10 +252,11 @@ int report_command(const ReportOptions& options) {
     report.without_anchors = std::move(without.summary);
   }
   if (!page.empty()) {
-    const std::string html =
-        page_of(scene, page_run(scene, recording), options.language, [] { return !interrupted(); });
+    const PageRun replayed = page_run(scene, recording);
+    const std::string html = page_of(scene, replayed, options.language, [] { return !interrupted(); });
     if (!html.empty()) write_whole_file({page, options.force}, host::FileKind::html, html);
     report.page = std::filesystem::path(page).filename().string();
+    report.page_is_live = why_replay_only(scene, replayed).word.empty();
   }
   if (interrupted()) return interrupted_report(file);
   write_whole_file({file, options.force}, host::FileKind::html, report_page(report, options.language));

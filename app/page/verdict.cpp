@@ -38,6 +38,7 @@ std::vector<BodyEnd> ends_of(const Run& run) {
     BodyEnd end{
         model.bodies[static_cast<std::size_t>(b)].name, of.beyond_since, of.peak_tilt * k_degrees, {}};
     if (std::isfinite(of.peak.critical)) end.critical = of.peak.critical * k_degrees;
+    end.held = is_held(model, run.parameters(), b);
     out.push_back(end);
   }
   return out;
@@ -61,7 +62,9 @@ std::string verdict_in_words(const std::vector<BodyEnd>& bodies, Language langua
   const std::string tilt = in_hundredths(most->peak_tilt);
   if (!most->critical) return say_in(language, words::k_nothing_falls_far, most->name, tilt);
   return say_in(language,
-                most->peak_tilt > *most->critical ? words::k_nothing_stays_over : words::k_nothing_falls,
+                most->peak_tilt > *most->critical ? words::k_nothing_stays_over
+                : most->held                      ? words::k_nothing_falls_held
+                                                  : words::k_nothing_falls,
                 most->name, tilt, in_hundredths(*most->critical));
 }
 

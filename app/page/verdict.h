@@ -16,6 +16,7 @@ struct BodyEnd {
   std::optional<double> overturned;  ///< s
   double peak_tilt = 0;              ///< degrees
   std::optional<double> critical;    ///< degrees, in the direction of that
+  bool held = false;                 ///< by an anchor
 };
 
 std::vector<BodyEnd> ends_of(const Run& run);

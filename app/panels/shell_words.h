@@ -21,8 +21,8 @@ inline constexpr Phrase k_choose_about{"or drop a scene, a recording or an accel
                                        "シーン・記録・加速度波形のファイルをウィンドウに落としても開けます"};
 inline constexpr Phrase k_filter{"type to filter", "文字を入力して絞り込む"};
 inline constexpr Phrase k_recent{"Recent files", "最近のファイル"};
-inline constexpr Phrase k_no_recent{"Scenes and recordings that you open stand here.",
-                                    "開いたシーンと記録がここに並びます。"};
+inline constexpr Phrase k_no_recent{"Scenes and recordings that you open from files stand here.",
+                                    "ファイルから開いたシーンと記録がここに並びます。"};
 inline constexpr Phrase k_missing{"is not there any more", "見つかりません"};
 inline constexpr Phrase k_built_in{"Built-in scenes", "組み込みのシーン"};
 inline constexpr Phrase k_begin_here{"· begin here", "・最初はこれ"};

@@ -31,7 +31,7 @@ void draw_presets(Player& player) {
 
 void draw_guide(TeachingState& state) {
   DemoGuide& guide = *state.guide;
-  if (!guide.step()) ImGui::SetScrollY(0);  // it has just begun
+  if (std::exchange(state.begins, false)) ImGui::SetScrollY(0);
   ImGui::TextWrapped(
       "%s", say(k_demo_step, say(guide.demo().name), guide.step().value_or(0) + 1, guide.demo().steps.size())
                 .c_str());

@@ -22,6 +22,7 @@ struct TeachingState {
   std::shared_ptr<const Accelerogram> record;  ///< of the present place
   double scale = 1;                            ///< likewise
   std::optional<DemoGuide> guide;
+  bool begins = false;                ///< the guide, since the last frame
   std::optional<std::size_t> wanted;  ///< index into demos(): asked for in the last frame
   std::string came_from;              ///< what a demo's scene was opened instead of; empty: nothing
   bool back = false;                  ///< to that: asked for in the last frame

@@ -54,11 +54,12 @@ struct Report {
   std::shared_ptr<const study::FragilityPlan> fragility_plan = {};
   study::FragilityResults fragility = {};
   std::optional<nlohmann::ordered_json> without_anchors;  ///< summary of the run; absent: none is in place
-  std::string page = {};                                  ///< live page beside the report; empty: none
+  std::string page = {};                                  ///< page beside the report; empty: none
+  bool page_is_live = false;                              ///< it computes, and does not only replay
 };
 
-/// The page as one HTML file that refers to nothing outside of it but its live page. The same report gives
-/// the same text.
+/// The page as one HTML file that refers to nothing outside of it but the page beside it. The same report
+/// gives the same text.
 std::string report_page(const Report& report, Language language);
 
 }  // namespace topple::app

@@ -5,6 +5,7 @@
 
 #include "app/report/page_style.h"
 #include "app/report/report_parts.h"
+#include "app/support/terms.h"
 #include "solver/model/accelerogram.h"
 
 namespace topple::app {
@@ -36,15 +37,6 @@ std::size_t most_tilted(const ReportPage& page) {
   return most;
 }
 
-bool is_held(const Setup& setup, std::size_t body) {
-  const std::vector<Anchor>& anchors = setup.model.anchors;
-  for (std::size_t k = 0; k < anchors.size(); ++k)
-    if (setup.parameters.anchors[k] &&
-        (anchors[k].body == static_cast<int>(body) || anchors[k].other.body == static_cast<int>(body)))
-      return true;
-  return false;
-}
-
 /// By the share of the angle at which it would overturn; of bodies that have none, by the angle.
 std::size_t nearest_to_falling(const ReportPage& page) {
   std::optional<std::size_t> most;
@@ -70,9 +62,11 @@ std::string verdict(const ReportPage& page) {
       return page.say(words::k_nothing_falls_far, page.name(most),
                       shown(body["peak_tilt_deg"].get<double>(), 2));
     const auto share = body["peak_critical_share"].get<double>();
-    const Phrase& said = share > 1                                   ? words::k_nothing_stays_over
-                         : is_held(page.report().scene->setup, most) ? words::k_nothing_falls_held
-                                                                     : words::k_nothing_falls;
+    const Setup& setup = page.report().scene->setup;
+    const Phrase& said = share > 1 ? words::k_nothing_stays_over
+                         : is_held(setup.model, setup.parameters, static_cast<int>(most))
+                             ? words::k_nothing_falls_held
+                             : words::k_nothing_falls;
     out = page.say(said, page.name(most), shown(share * *critical, 2), shown(*critical, 2));
     const ordered_json& e = page.report().summary["error_estimate"];
     const ordered_json tilt_error =
@@ -142,7 +136,7 @@ std::string result(const ReportPage& page) {
   if (const std::string told = harms(page); !told.empty()) out += page.paragraph(told, "verdict");
   if (!report.page.empty())
     out += page.paragraph("<a href=\"" + escaped(address_of(report.page)) + "\">" +
-                          page.say(words::k_live_page) + "</a>");
+                          page.say(report.page_is_live ? words::k_live_page : words::k_replay_page) + "</a>");
   std::string broken;
   for (const ordered_json& a : report.summary["anchors"])
     if (a["broke"].get<bool>())

@@ -148,21 +148,36 @@ std::string walls_and_doors(const View& view, const Room& room) {
   return out;
 }
 
+/// m, mean of its nodes as it lies.
+double height(const Plan& plan, int body) {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t n = 0; n < plan.model.node_body.size(); ++n)
+    if (plan.model.node_body[n] == body) sum += plan.page.report().nodes_at_end[n].z(), ++count;
+  return sum / std::max(1, count);
+}
+
 std::string bodies(const View& view, const Plan& plan) {
-  std::string start, standing, fallen;
+  std::string start, standing;
+  std::vector<std::pair<double, std::string>> fallen;  // what lies higher covers what lies below it
   const auto shape = [&](const Footprint& print, const char* how) {
     return "<polygon points=\"" + view.points(outline(print)) + "\" " + how + "/>\n";
   };
   for (std::size_t k = 0; k < plan.after.lying.size(); ++k) {
     const int body = plan.after.body[k];
     const Footprint& print = plan.after.lying[k];
-    (plan.fell(body) ? fallen : standing) += shape(print, plan.fell(body) ? k_fallen : k_standing);
+    if (plan.fell(body))
+      fallen.emplace_back(height(plan, body), shape(print, k_fallen));
+    else
+      standing += shape(print, k_standing);
     const auto was = std::ranges::find(plan.before.body, body);
     if (was == plan.before.body.end()) continue;
     const Footprint& then = plan.before.lying[static_cast<std::size_t>(was - plan.before.body.begin())];
     if ((middle(then.core) - middle(print.core)).norm() > k_moved) start += shape(then, k_start);
   }
-  return standing + fallen + start;
+  std::ranges::stable_sort(fallen, {}, &std::pair<double, std::string>::first);
+  for (const auto& [height, drawn] : fallen) standing += drawn;
+  return standing + start;
 }
 
 /// Of what fell, beside the people on whom it lies.

@@ -45,6 +45,7 @@ inline constexpr Phrase k_is_caught{"“{0}” cannot leave: blocked where they 
                                     "「{0}」の居場所に{1}がかかり、動けない。"};
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};
+inline constexpr Phrase k_replay_page{"Page that replays this run", "この計算結果を再生するページ"};
 inline constexpr Phrase k_others_stay{"{0} of {1} bodies stay standing.", "{1}体のうち{0}体は転倒しない。"};
 inline constexpr Phrase k_sensitive{
     "The outcome turns on small differences in the shaking: read the probabilities in section {0}, not the "
@@ -284,13 +285,14 @@ inline constexpr Phrase k_factor{"factor on the floor motion", "床の揺れの�
 inline constexpr Phrase k_fragility{"Fragility over the floor's peak acceleration",
                                     "床の最大加速度に対するフラジリティ"};
 inline constexpr Phrase k_fragility_text{
-    "{0} runs as planar blocks at {1} levels of the peak acceleration from {2} to {3} gal, the motion scaled "
+    "{0} runs of motion alone, as planar blocks, at {1} levels of the peak acceleration from {2} to {3} gal, "
+    "the motion scaled "
     "to "
     "each. Varied from run to run: {4}. Sliding counts from {5} mm on. A lognormal distribution is fitted; "
     "its "
     "median is the peak acceleration at which the chance is one half, β the standard deviation of its "
     "logarithm.",
-    "揺れを最大加速度 {2}～{3} gal の {1} 段階に合わせ、平面剛体ブロックとして計 {0} "
+    "揺れを最大加速度 {2}～{3} gal の {1} 段階に合わせ、運動だけを平面剛体ブロックとして計 {0} "
     "回計算した。計算ごとに変えたもの：{4}。{5} mm "
     "を超える移動を滑りとする。対数正規分布を当てはめた。中央値は確率が1/"
     "2となる最大加速度、βは対数標準偏差である"

@@ -23,6 +23,15 @@ inline bool is_static(const Setup& setup) {
   return setup.run.analysis == Analysis::statics;
 }
 
+/// By an anchor that is in place.
+inline bool is_held(const Model& model, const Parameters& parameters, int body) {
+  for (std::size_t k = 0; k < model.anchors.size(); ++k)
+    if ((parameters.anchors.empty() || parameters.anchors[k]) &&
+        (model.anchors[k].body == body || model.anchors[k].other.body == body))
+      return true;
+  return false;
+}
+
 /// Else parameters of contact change nothing.
 inline bool can_touch(const Model& model) {
   return !model.planes.empty() || model.bodies.size() > 1;

@@ -463,6 +463,7 @@ void Viewer::guide(std::size_t demo, const std::string& came_from) {
   tab_ = Tab::teach;
   teaching_.came_from = came_from;
   teaching_.guide.emplace(demos()[demo], player_);
+  teaching_.begins = true;
 }
 
 void Viewer::inspect(const std::optional<Subject>& subject) {

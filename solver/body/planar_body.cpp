@@ -25,7 +25,6 @@ constexpr double k_time_slack = 1e-9;  // s, as of the jumps of other bodies
 // Steps of a run are short, so that this takes few terms more: what is left is rounding.
 constexpr double k_tolerance = 1e-16;
 constexpr double k_growth = 30;         // hard_floor_error()
-constexpr double k_softer = 1 - 1e-6;   // alpha over that of a hard floor, which may be rounded
 constexpr double k_noise = 1e-12;       // rad, m/s, rad/s: what a best fit makes of nothing
 constexpr double k_longest = 0.01;      // s, step of an adaptive run while it rocks or flies,
 constexpr double k_shortest = 1e-5;     // s, but for one that ends
@@ -123,7 +122,6 @@ double sinking(const ContactLaw& law, double force, const std::vector<int>& poin
 
 double hard_floor_error(const Model& model, int body, const PlanarCase& found, const ContactLaw& law) {
   const planar::Block& block = found.block;
-  const std::optional<double> hard = rigid_alpha(model, law, Vec3(0, 0, -block.gravity));
   const std::vector<planar::BaseLine> base = planar::base_lines(model, body, found.along);
   double greatest = 0;
   for (const Side side : {Side::left, Side::right}) {
@@ -133,7 +131,7 @@ double hard_floor_error(const Model& model, int body, const PlanarCase& found, c
     const double d = sinking(law, block.mass * block.gravity, edge, model, found.floor);
     greatest = std::max(greatest, k_growth * d * block.height / (2 * b * b));
   }
-  return hard && law.alpha >= k_softer * *hard ? 0 : greatest;
+  return stands_for_hard_floor(model, law, Vec3(0, 0, -block.gravity)) ? 0 : greatest;
 }
 
 std::string_view why_not_planar(const Model& model, const Parameters& parameters, const State& state,

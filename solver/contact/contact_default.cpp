@@ -77,6 +77,12 @@ std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, con
   return greatest_alpha(model, law, gravity, on_floor);
 }
 
+bool stands_for_hard_floor(const Model& model, const ContactLaw& law, const Vec3& gravity) {
+  constexpr double k_rounding = 1e-6;
+  const std::optional<double> least = rigid_alpha(model, law, gravity);
+  return least && law.alpha >= (1 - k_rounding) * *least;
+}
+
 std::optional<double> early_uplift(const Model& model, const ContactLaw& law, const Vec3& gravity) {
   const auto needed = greatest_alpha(model, law, gravity, [](const Edge& edge, double height) {
     return 2 * k_early_uplift * edge.distance * edge.distance / height;

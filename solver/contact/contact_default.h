@@ -20,6 +20,9 @@ namespace topple {
 /// - The depth is at most a hundredth of L.
 std::optional<double> rigid_alpha(const Model& model, const ContactLaw& law, const Vec3& gravity);
 
+/// The alpha of `law` is that at least, but for rounding: its contacts stand for a hard floor.
+bool stands_for_hard_floor(const Model& model, const ContactLaw& law, const Vec3& gravity);
+
 /// Least alpha between members, N, with which bodies that knock and lean on each other move nearly as rigid
 /// ones; none, and the formula for alpha, as above.
 ///   d = min(1e-4 h, 0.01 b, 0.01 L)

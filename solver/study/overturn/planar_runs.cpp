@@ -9,16 +9,13 @@
 namespace topple::study {
 namespace {
 
-constexpr double k_softer = 1 - 1e-6;  // alpha over rigid_alpha
-
 /// Empty: nothing in the scene's settings is against it.
 std::string setting_against(const Setup& setup) {
   const Parameters& p = setup.parameters;
   if (p.want_stress) return "stresses are asked for";
   if (setup.room.ways() > 0) return "the way out depends on where bodies come to lie";
   if (p.contact.restitution > 0) return "contacts bounce";
-  const std::optional<double> alpha = rigid_alpha(setup.model, p.contact, p.gravity);
-  if (!alpha || p.contact.alpha < k_softer * *alpha) return "contacts are soft";
+  if (!stands_for_hard_floor(setup.model, p.contact, p.gravity)) return "contacts are soft";
   return "";
 }
 

@@ -244,6 +244,9 @@ TEST(Verdict, says_who_falls_first_and_who_stays) {
             "Nothing overturns. “c” comes nearest to it: it tilts by 2.00° of the 10.00° at which it would.");
   EXPECT_EQ(verdict_in_words({{"c", {}, 5, 20.}, {"d", {}, 4, 10.}, {"e", {}, 9, {}}}, Language::english),
             "Nothing overturns. “d” comes nearest to it: it tilts by 4.00° of the 10.00° at which it would.");
+  EXPECT_EQ(verdict_in_words({{"c", {}, 2, 10., true}}, Language::english),
+            "Nothing overturns. “c” comes nearest to it: it tilts by 2.00°; without what holds it, it would "
+            "overturn from 10.00° on.");
   EXPECT_EQ(verdict_in_words({}, Language::english), "");
 }
 
