@@ -34,7 +34,19 @@ std::vector<ImVec2> without_straight_points(std::span<const ImVec2> points, floa
   return kept;
 }
 
+std::vector<float> places_of(const Lane& lane, std::span<const RowPtr> rows) {
+  std::vector<float> places;
+  places.reserve(rows.size());
+  for (const RowPtr& row : rows) places.push_back(lane.x(row->time));
+  return places;
+}
+
 void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows, const ValueAt& value,
+               ImU32 colour, float thickness) {
+  add_curve(list, lane, places_of(lane, rows), value, colour, thickness);
+}
+
+void add_curve(ImDrawList& list, const Lane& lane, std::span<const float> places, const ValueAt& value,
                ImU32 colour, float thickness) {
   std::vector<ImVec2> points;
   const auto draw = [&] {
@@ -57,9 +69,9 @@ void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows,
     if (column.least != column.greatest)
       points.emplace_back(column.to, lane.y(rises ? column.greatest : column.least));
   };
-  for (std::size_t i = 0; i < rows.size(); ++i) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
     const double v = value(i);
-    const float x = lane.x(rows[i]->time);
+    const float x = places[i];
     if (any && (std::isnan(v) || std::floor(x) != std::floor(column.from))) end_column();
     if (std::isnan(v)) {
       draw();

@@ -34,7 +34,12 @@ using ValueAt = std::function<double(std::size_t)>;
 /// Of curves, px. Whole ones: others are made of three times as many triangles.
 inline constexpr float k_thin_curve = 1, k_thick_curve = 2;
 
+/// x of each row, px.
+std::vector<float> places_of(const Lane& lane, std::span<const RowPtr> rows);
+
 /// Draws at most the least and greatest value of each pixel column, with gaps where there is none.
+void add_curve(ImDrawList& list, const Lane& lane, std::span<const float> places, const ValueAt& value,
+               ImU32 colour, float thickness);
 void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows, const ValueAt& value,
                ImU32 colour, float thickness);
 

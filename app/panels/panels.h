@@ -55,10 +55,26 @@ struct GhostCurves {
   std::vector<int> body;  ///< per piece of furniture of the run shown, the index of its own; -1: it has none
 };
 
+/// Tilts of each piece of furniture over Player::way(), kept from frame to frame.
+class TiltHistory {
+ public:
+  void follow(const Player& player);
+
+  bool shares() const { return shares_; }  ///< of the critical angle, cut in shown(); else degrees
+  const std::vector<double>& greatest() const { return greatest_; }  ///< of each piece
+  double shown(std::size_t row, std::size_t piece) const { return shown_[row * greatest_.size() + piece]; }
+
+ private:
+  bool shares_ = false;
+  std::vector<double> greatest_;
+  std::vector<float> shown_;  // row by row
+  RowPtr first_, last_;       // rows that it has begun and ended with
+};
+
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.
 /// `ghost`: the run that is drawn pale.
-void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost = {});
+void draw_timeline(Player& player, const Box& box, TiltHistory& tilts, const GhostCurves& ghost = {});
 
 /// Of a static run: load factor over the displacement of one place, with where stability is lost and the
 /// present step. A click goes to the load step nearest to it.

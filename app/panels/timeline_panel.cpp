@@ -40,35 +40,10 @@ double tilt_share(const io::FrameRow& row, std::size_t body) {
   return row.body[body].tilt / (critical > 0 ? critical : k_pi / 2);
 }
 
-/// Of each piece of furniture over the run, found row by row: each is somewhere else in memory.
-struct Tilts {
-  explicit Tilts(const Player& player);
-
-  bool shares = false;           ///< of the critical angle; else degrees: nothing falls by itself
-  std::vector<double> greatest;  ///< of a piece
-  std::size_t rows;
-  std::vector<double> shown;  ///< piece by piece; shares are cut
-};
-
-Tilts::Tilts(const Player& player)
-    : greatest(static_cast<std::size_t>(player.scene().setup.model.furniture_total())),
-      rows(player.way().size()),
-      shown(greatest.size() * rows) {
-  for (std::size_t b = 0; b < greatest.size(); ++b) shares |= critical_angle(player, b) > 0;
-  for (std::size_t i = 0; i < rows; ++i) {
-    const io::FrameRow& row = *player.way()[i];
-    for (std::size_t b = 0; b < greatest.size(); ++b) {
-      const double tilt = shares ? tilt_share(row, b) : row.body[b].tilt * k_degrees;
-      greatest[b] = std::max(greatest[b], tilt);
-      shown[b * rows + i] = shares ? std::min(tilt, k_tilt_room) : tilt;
-    }
-  }
-}
-
 /// Those that tilt most over the run, of what they can, in their own order; one of each colour.
-std::vector<std::size_t> coloured_bodies(const Tilts& tilts) {
+std::vector<std::size_t> coloured_bodies(const TiltHistory& tilts) {
   std::vector<std::pair<double, std::size_t>> shares;
-  for (std::size_t b = 0; b < tilts.greatest.size(); ++b) shares.emplace_back(-tilts.greatest[b], b);
+  for (std::size_t b = 0; b < tilts.greatest().size(); ++b) shares.emplace_back(-tilts.greatest()[b], b);
   std::ranges::sort(shares);
   std::vector<std::size_t> coloured;
   for (const auto& [share, b] : shares)
@@ -138,13 +113,14 @@ void add_load_factor(ImDrawList& list, Lane lane, const std::vector<RowPtr>& row
   add_text(list, label_left, lane.top + ImGui::GetTextLineHeight(), theme().text, say(k_up_to, greatest));
 }
 
-void add_tilts(ImDrawList& list, Lane lane, const Player& player, const Tilts& tilts,
+void add_tilts(ImDrawList& list, Lane lane, const Player& player, const TiltHistory& tilts,
                const GhostCurves& ghost, float label_left) {
   const auto& bodies = player.scene().setup.model.bodies;
-  const std::size_t furniture = tilts.greatest.size();
-  const bool shares = tilts.shares;
+  const std::size_t furniture = tilts.greatest().size();
+  const bool shares = tilts.shares();
   double most = 0;
-  for (const double tilt : tilts.greatest) most = std::max(most, shares ? std::min(tilt, k_tilt_room) : tilt);
+  for (const double tilt : tilts.greatest())
+    most = std::max(most, shares ? std::min(tilt, k_tilt_room) : tilt);
   lane.low = 0;
   lane.high = shares ? k_tilt_room : std::max(k_least_tilt, 1.1 * most);
   list.AddLine({lane.left, lane.bottom}, {lane.right, lane.bottom}, theme().axis);
@@ -158,6 +134,7 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, const Tilts& t
     add_text(list, lane.left + 4, lane.y(1) - line - 1, theme().text,
              most < k_tilt_room ? say(k_critical_at_one) : say(k_critical_and_cut, k_tilt_room));
   }
+  const std::vector<float> places = places_of(lane, player.way());
   const std::vector<std::size_t> coloured = coloured_bodies(tilts);
   const auto is_coloured = [&](std::size_t b) { return std::ranges::find(coloured, b) != coloured.end(); };
   for (const bool with_colour : {false, true})  // coloured ones lie on top
@@ -173,9 +150,8 @@ void add_tilts(ImDrawList& list, Lane lane, const Player& player, const Tilts& t
             },
             theme().ghost, k_thin_curve);
       }
-      const double* const shown = tilts.shown.data() + b * tilts.rows;
       add_curve(
-          list, lane, player.way(), [shown](std::size_t i) { return shown[i]; },
+          list, lane, places, [&tilts, b](std::size_t i) { return tilts.shown(i, b); },
           with_colour ? line_colour(coloured, b) : theme().other, with_colour ? k_thick_curve : k_thin_curve);
     }
   const float room = lane.left - label_left - 4;
@@ -311,7 +287,7 @@ void add_mark_key(ImDrawList& list, const Player& player, float x, float y, floa
 }
 
 /// Marks along the bottom of the tilt lane; the one under the mouse says what it is.
-void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const Tilts& tilts) {
+void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const TiltHistory& tilts) {
   const float size = 0.28f * ImGui::GetTextLineHeight();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
@@ -355,7 +331,30 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const T
 
 }  // namespace
 
-void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost) {
+void TiltHistory::follow(const Player& player) {
+  const std::vector<RowPtr>& way = player.way();
+  const std::size_t pieces = static_cast<std::size_t>(player.scene().setup.model.furniture_total());
+  std::size_t rows = pieces == 0 ? 0 : shown_.size() / pieces;
+  const bool goes_on = rows > 0 && greatest_.size() == pieces && rows <= way.size() &&
+                       way.front() == first_ && way[rows - 1] == last_;
+  if (!goes_on) {
+    rows = 0;
+    shown_.clear();
+    greatest_.assign(pieces, 0);
+    shares_ = false;  // else nothing falls by itself
+    for (std::size_t b = 0; b < pieces; ++b) shares_ |= critical_angle(player, b) > 0;
+  }
+  for (; rows < way.size(); ++rows)
+    for (std::size_t b = 0; b < pieces; ++b) {
+      const io::FrameRow& row = *way[rows];
+      const double tilt = shares_ ? tilt_share(row, b) : row.body[b].tilt * k_degrees;
+      greatest_[b] = std::max(greatest_[b], tilt);
+      shown_.push_back(static_cast<float>(shares_ ? std::min(tilt, k_tilt_room) : tilt));
+    }
+  if (!way.empty()) first_ = way.front(), last_ = way.back();
+}
+
+void draw_timeline(Player& player, const Box& box, TiltHistory& tilts, const GhostCurves& ghost) {
   begin_panel("timeline", box);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float line = ImGui::GetTextLineHeight();
@@ -376,7 +375,7 @@ void draw_timeline(Player& player, const Box& box, const GhostCurves& ghost) {
     add_load_factor(list, upper, player.way(), label_left);
   else
     add_acceleration(list, upper, player.way(), label_left);
-  const Tilts tilts(player);
+  tilts.follow(player);
   add_tilts(list, lower, player, tilts, ghost, label_left);
   add_axis(list, lower, player.scene().setup, label_left);
 

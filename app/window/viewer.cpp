@@ -274,7 +274,7 @@ GhostCurves Viewer::ghost_curves() const {
 void Viewer::draw_panels() {
   draw_side_panel(row_);
   asked_ = draw_transport_bar(player_, transport_, transport_height_);
-  draw_timeline(player_, timeline_, ghost_curves());
+  draw_timeline(player_, timeline_, tilts_, ghost_curves());
   if (is_static(player_.scene().setup)) draw_load_path(player_, path_);
   if (!inspection_.plots.empty()) draw_plots_strip();
   draw_status();

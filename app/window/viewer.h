@@ -201,6 +201,7 @@ class Viewer {
   render::NamedView view_;
   Inspection inspection_;
   Histories histories_;
+  TiltHistory tilts_;
   TeachingState teaching_;
   PrecisionState precision_;
   std::optional<EarlierRun> earlier_;
