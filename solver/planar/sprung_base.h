@@ -32,12 +32,14 @@ class SprungBase {
   SprungBase(const Block& block, std::span<const BaseLine> base, const ContactLaw& law, double L);
 
   /// Factor on the rate that Housner's condition leaves a block that lands on this edge, from the other one,
-  /// at this rate, rad/s. Slower landings than those from a tilt at which it stands on an edge alone have the
-  /// factor of these. 1 where Housner's condition lets no block rock on.
+  /// at this rate, rad/s. The slowest landing that is followed is from twice the tilt at which the block
+  /// stands on one edge alone; slower ones have its factor. 1 where Housner's condition lets no block rock
+  /// on.
   double landing_factor(const Block& block, Side side, double rate) const;
-  /// Rate, rad/s, with which a block lifts about this edge: none on a rigid floor. It stood still while the
-  /// horizontal acceleration of the floor, m/s^2, grew evenly so, m/s^3, or until it jumped there;
-  /// `vertical`: gravity plus acceleration of the floor.
+  /// Rate, rad/s, with which a block lifts about this edge, where one on a rigid floor would have none.
+  /// `horizontal`: acceleration of the floor at that instant, m/s^2; `growth`: its change, m/s^3, taken as
+  /// even since the floor was at rest; where it does not grow it has jumped to what it is. `vertical`:
+  /// gravity plus acceleration of the floor.
   double lift_rate(const Block& block, Side side, double horizontal, double growth, double vertical) const;
 
  private:

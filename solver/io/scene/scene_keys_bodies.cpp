@@ -31,7 +31,7 @@ void add_damping(Rows& rows) {
 void add_restitution(Rows& rows) {
   rows.number("restitution", 0, 2,
               "of its base while it is a planar block: factor on the angular rate that an impact leaves by "
-              "Housner's condition, on `edges` as on its springs; once it is a rigid body "
+              "Housner's condition (with `edges` by its contact springs); once it is a rigid body "
               "`contact.restitution` holds")
       .absent(1)
       .only("model", {"auto", "planar"})
