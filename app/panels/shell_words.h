@@ -106,6 +106,14 @@ inline constexpr Phrase k_picture_of_row{"It shows {0:.3f} s, the newest instant
 inline constexpr Phrase k_no_such_range{
     "Nothing lies between {0:.2f} and {1:.2f}; the recording has {2:.2f} to {3:.2f}.",
     "{0:.2f} から {1:.2f} の間には何もありません（記録は {2:.2f}〜{3:.2f}）。"};
+inline constexpr Phrase k_no_such_size{"Sides of a picture are {0} to {1} px, not {2} × {3}.",
+                                       "画像の辺は {0}〜{1} px です（{2} × {3} は描けません）。"};
+inline constexpr Phrase k_odd_size{"Sides of a video are even numbers, not {0} × {1} px.",
+                                   "動画の辺は偶数にしてください（{0} × {1} px）。"};
+inline constexpr Phrase k_no_such_rate{"A video has 1 to {0} pictures a second, not {1}.",
+                                       "動画は毎秒 1〜{0} 枚です（{1} は選べません）。"};
+inline constexpr Phrase k_no_such_speed{"A video runs at {0:.4g} to {1:g} times real time, not {2:g}.",
+                                        "動画の速さは実時間の {0:.4g}〜{1:g} 倍です（{2:g} は選べません）。"};
 inline constexpr Phrase k_video_about{"The view as it is seen now, over a range of time.",
                                       "現在の視点の動画。時間の範囲を選べます。"};
 inline constexpr Phrase k_tables_about{

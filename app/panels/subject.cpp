@@ -71,13 +71,21 @@ double slide_value(const FrameContext& now, std::size_t index) {
   return 1e3 * now.row.body[index].slide;
 }
 
-/// From the turn between the neighbours.
+/// Of the turn between the neighbours; at an end as the means of the last two intervals go on.
 double angular_velocity(const FrameContext& now, std::size_t index) {
-  const io::FrameRow& from = now.before ? *now.before : now.row;
-  const io::FrameRow& to = now.after ? *now.after : now.row;
-  if (!now.moves || !(to.time > from.time)) return k_no_value;
-  return log_quaternion(to.body[index].rotation() * from.body[index].rotation().conjugate()).norm() /
-         (to.time - from.time);
+  if (!now.moves) return k_no_value;
+  const auto mean = [index](const io::FrameRow& a, const io::FrameRow& b) -> Vec3 {
+    return log_quaternion(b.body[index].rotation() * a.body[index].rotation().conjugate()) /
+           (b.time - a.time);
+  };
+  if (now.before && now.after) return mean(*now.before, *now.after).norm();
+  const io::FrameRow* const neighbour = now.before ? now.before : now.after;
+  if (!neighbour) return k_no_value;
+  const Vec3 near = mean(*neighbour, now.row);
+  if (!now.further) return near.norm();
+  const Vec3 beyond = mean(*now.further, *neighbour);
+  return (near + (near - beyond) * (now.row.time - neighbour->time) / (now.row.time - now.further->time))
+      .norm();
 }
 
 double kinetic_value(const FrameContext& now, std::size_t index) {
@@ -302,6 +310,8 @@ FrameContext frame_context(const Player& player, const io::FrameRow& row) {
   if (at != way.begin()) now.before = (at - 1)->get();
   const auto next = at != way.end() && (*at)->time == row.time ? at + 1 : at;
   if (next != way.end()) now.after = next->get();
+  if (!now.after && at - way.begin() > 1) now.further = (at - 2)->get();
+  if (!now.before && way.end() - next > 1) now.further = (next + 1)->get();
   now.anchor_peaks = player.anchor_peaks();
   now.moves = player.scene().setup.run.analysis == Analysis::dynamic;
   return now;

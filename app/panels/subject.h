@@ -38,6 +38,7 @@ struct FrameContext {
   const io::FrameRow& row;
   const io::FrameRow* before = nullptr;
   const io::FrameRow* after = nullptr;
+  const io::FrameRow* further = nullptr;      ///< beyond the only neighbour
   std::span<const double> anchor_peaks = {};  ///< N, Player::anchor_peaks()
   bool moves = true;                          ///< false: of a static run, in which nothing has a velocity
 };

@@ -90,9 +90,26 @@ std::set<ModelLevel> levels_of(const ReportPage& page) {
   return levels;
 }
 
-/// Contacts have springs, of which planar blocks know nothing.
-bool has_springs(const ReportPage& page) {
-  return std::ranges::any_of(levels_of(page), [](ModelLevel level) { return !traits(level).has_block; });
+/// How what was computed stood on the floor: a planar block rocks on rigid corners, but on springs where
+/// points lie between them.
+struct Footing {
+  bool springs = false, rigid = false;
+};
+
+Footing footing(const ReportPage& page) {
+  const Model& model = page.report().scene->setup.model;
+  Footing out;
+  for (const ModelLevel level : levels_of(page)) out.springs |= !traits(level).has_block;
+  for (std::size_t b = 0; b < page.bodies().size(); ++b) {
+    const ordered_json& body = page.bodies()[b];
+    bool is_block = traits(level_of(body["model"]).kind).has_block;
+    for (const ordered_json& change : body["models"])
+      is_block |= traits(level_of(change["model"]).kind).has_block;
+    if (!is_block) continue;
+    const bool corners = model.bodies[b].base_points.size() == model.bodies[b].support_polygon.size();
+    (corners ? out.rigid : out.springs) = true;
+  }
+  return out;
 }
 
 /// What moved the bodies, whatever the scene asks of frames.
@@ -132,7 +149,9 @@ std::string assumptions_section(ReportPage& page) {
   if (!model.planes.empty()) list.push_back(page.say(words::k_rigid_floor));
   if (model.furniture_total() < static_cast<int>(model.bodies.size()))
     list.push_back(page.say(words::k_beam_floor));
-  list.push_back(page.say(has_springs(page) ? words::k_friction : words::k_rigid_friction, frictions(setup)));
+  const Footing contacts = footing(page);
+  if (contacts.springs) list.push_back(page.say(words::k_friction, frictions(setup)));
+  if (contacts.rigid) list.push_back(page.say(words::k_rigid_friction, frictions(setup)));
   if (some([](const Material& m) { return m.yield > 0; }))
     list.push_back(
         page.say(words::k_frames_plastic, some([](const Material& m) { return m.fracture_strain > 0; })
@@ -159,7 +178,7 @@ std::string settings_section(ReportPage& page) {
        report.summary["status"] == "stopped" ? page.say(words::k_stopped, simulated) : simulated + " s"},
       {page.say(words::k_integrator), integrators(page)},
       {page.say(words::k_step), step(page)}};
-  const bool springs = has_springs(page);
+  const bool springs = footing(page).springs;
   const std::string law(traits(p.contact).word);
   rows.push_back({page.say(words::k_contact), springs ? law : page.say(words::k_no_springs, law)});
   if (springs) {

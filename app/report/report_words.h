@@ -376,10 +376,13 @@ inline constexpr Phrase k_beam_floor{
     "back.",
     "梁でモデル化した床・壁は変形する。その端部は建物とともに動き、家具から建物への影響は考慮しない。"};
 inline constexpr Phrase k_rigid_friction{
-    "Contact is rigid: a landing leaves the angular rate that angular momentum about the new edge gives "
-    "(Housner), times the restitution of the piece; one coefficient of friction holds at all speeds, {0}.",
-    "接触は剛とする。着地後の角速度は新しい辺まわりの角運動量（Housner）から求めた値に家具の反発係数を乗じ、"
-    "摩擦係数は速度によらず一定（{0}）とする。"};
+    "Contact of a planar block is rigid: a landing leaves the angular rate that angular momentum about the "
+    "new "
+    "edge gives (Housner), times the restitution of the piece; one coefficient of friction holds at all "
+    "speeds, {0}.",
+    "面内ブロックの接触は剛とする。着地後の角速度は新しい辺まわりの角運動量（Housner）から求めた値に家具の反"
+    "発係数を"
+    "乗じ、摩擦係数は速度によらず一定（{0}）とする。"};
 inline constexpr Phrase k_friction{
     "Contact is a spring against penetration with one coefficient of friction at all speeds, {0}.",
     "接触は貫入に抵抗するばねで表し、摩擦係数は速度によらず一定（{0}）とする。"};

@@ -133,8 +133,9 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
       return close();
     }
     const bool video = what == What::video;
+    require_drawable();
     const double first = player.way().front()->time, last = player.way().back()->time;
-    if (video && (from > last || to < first || (from >= to && first < last)))
+    if (video && !(from <= last && to >= first && (from < to || first == last)))
       throw std::runtime_error(say(ww::k_no_such_range, from, to, first, last));
     words = {"render", recording, video ? "--mp4" : "--still",
              result,   "--size",  fmt::format("{}x{}", size[0], size[1])};
@@ -151,6 +152,18 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
   } catch (const std::runtime_error& error) {
     refused_ = error.what();
   }
+}
+
+/// Throws what is wrong with the numbers of a picture or video.
+void ExportDialog::require_drawable() const {
+  const auto [least, most] = std::minmax(size[0], size[1]);
+  if (least < k_least_picture || most > k_most_picture)
+    throw std::runtime_error(say(ww::k_no_such_size, k_least_picture, k_most_picture, size[0], size[1]));
+  if (what != What::video) return;
+  if (size[0] % 2 != 0 || size[1] % 2 != 0) throw std::runtime_error(say(ww::k_odd_size, size[0], size[1]));
+  if (rate < 1 || rate > k_most_rate) throw std::runtime_error(say(ww::k_no_such_rate, k_most_rate, rate));
+  if (!(speed >= k_least_speed && speed <= k_most_speed))
+    throw std::runtime_error(say(ww::k_no_such_speed, k_least_speed, k_most_speed, speed));
 }
 
 void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
@@ -193,15 +206,12 @@ void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
     label(ww::k_size);
     ImGui::SetNextItemWidth(2 * number);
     ImGui::InputInt2("px##size", size);
-    for (int& side : size) side = std::clamp(side, k_least_picture, k_most_picture);
     for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {3840, 2160}}) {
       ImGui::SameLine();
       if (ImGui::SmallButton(fmt::format("{}×{}", width, height).c_str())) size[0] = width, size[1] = height;
     }
   }
   if (what != What::video) return;
-  for (int& side : size) side += side % 2;  // as H.264 has it
-  const double first = player.way().empty() ? 0 : player.way().front()->time;
   // what was asked for to the end of a run that goes on follows it
   const double last = player.way().empty() ? 0 : player.way().back()->time;
   if (to >= std::exchange(last_, last)) to = last;
@@ -214,16 +224,12 @@ void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
   ImGui::SameLine();
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble(fmt::format("{}##to", unit).c_str(), &to, 0, 0, "%.2f");
-  if (!std::isfinite(from)) from = first;
-  if (!std::isfinite(to)) to = last;
   label(ww::k_rate);
   ImGui::SetNextItemWidth(number);
   ImGui::InputInt("##rate", &rate, 0);
-  rate = std::clamp(rate, 1, k_most_rate);
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble((say(ww::k_times_real_time) + "##speed").c_str(), &speed, 0, 0, "%g");
-  speed = std::clamp(std::isfinite(speed) ? speed : 1, k_least_speed, k_most_speed);
 }
 
 void ExportDialog::draw_path() {

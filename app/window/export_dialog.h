@@ -36,6 +36,7 @@ class ExportDialog {
   void suggest_path(const Player& player);
   void draw_choices(const Player& player, const Viewer& viewer);
   void draw_path();
+  void require_drawable() const;
 
   Exports& exports_;
   FileDialog& files_;

@@ -39,7 +39,7 @@ std::string in_lines(const std::string& text, float width) {
 void begin_panel_over(const char* name, const Box& window, float width, float height,
                       const std::string& title, const render::OverlayFonts& fonts) {
   constexpr ImGuiWindowFlags k_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav;
+                                       ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNavFocus;
   const float unit = fonts.small->FontSize / 14;
   ImGui::SetNextWindowPos({window.left, window.top});
   ImGui::SetNextWindowSize({window.width, window.height});
@@ -55,6 +55,7 @@ void begin_panel_over(const char* name, const Box& window, float width, float he
   ImGui::PushStyleVar(ImGuiStyleVar_ChildRounding, 6 * unit);
   ImGui::PushStyleColor(ImGuiCol_ChildBg, ImGui::GetStyle().Colors[ImGuiCol_WindowBg]);
   ImGui::BeginChild("panel", {wide, tall}, true, k_flags | ImGuiWindowFlags_AlwaysUseWindowPadding);
+  if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();  // Tab goes among its fields
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
   ImGui::PushFont(fonts.text);

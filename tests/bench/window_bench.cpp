@@ -1,4 +1,4 @@
-// What a person waits for in the window, drawn by one core of the processor at 1280x720: the first frame,
+// What a person waits for in the window, drawn by two cores of the processor at 1280x720: the first frame,
 // frames while a run goes on, runs in real time, and any instant of a recording of 60 s.
 //   window_bench PROGRAM
 #include <imgui.h>
@@ -99,9 +99,10 @@ void measure_turning(const std::string& program, const char* scene) {
   print((std::string(scene) + " turned, a frame").c_str(), ms);
 }
 
-/// A whole run, drawn 30 times a second as far as that is kept.
+/// A whole run, drawn as the window draws it: 60 times a second as far as that is kept. Frames of more than a
+/// thirtieth of a second are late.
 void measure_real_time(const std::string& program, const char* scene) {
-  constexpr std::chrono::microseconds k_frame{33333};
+  constexpr std::chrono::microseconds k_frame{16667};
   Screen screen(program);
   screen.show(scene);
   while (!screen.player().can_edit()) screen.frame();
@@ -113,7 +114,7 @@ void measure_real_time(const std::string& program, const char* scene) {
   while (screen.player().status().kind != LiveStatus::Kind::over) {
     ms.push_back(screen.frame());
     due += k_frame;
-    late += Clock::now() > due;
+    late += ms.back() > 1e3 / 30;
     due = std::max(due, Clock::now());
     std::this_thread::sleep_until(due);
   }
@@ -177,6 +178,7 @@ int main(int count, char** words) {
     std::fprintf(stderr, "usage: window_bench PROGRAM\n");
     return 2;
   }
+  setenv("LP_NUM_THREADS", "2", 0);  // as Mesa draws for a window on two cores
   ImGuiContext* const interface = ImGui::CreateContext();
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   const int code = topple::app::bench(std::filesystem::absolute(words[1]).string(), start);

@@ -1,4 +1,6 @@
 // Exporting beside the window, off screen, with mouse and keyboard fed by hand.
+#include <cmath>
+
 #include "unit/app/shell_fixture.h"
 
 namespace topple::app {
@@ -46,6 +48,47 @@ TEST_F(ExportDialogTest, a_picture_has_the_size_that_was_asked_for) {
   set_path("view.png");
   start();
   EXPECT_NE(dialog().refused().find("view.png"), std::string::npos);  // it is there already
+}
+
+TEST_F(ExportDialogTest, numbers_that_cannot_be_drawn_are_refused_with_what_is_allowed) {
+  open_rocking();
+  run_to(0.2);
+  open_export(ExportDialog::What::video);
+  set_path("view.mp4");
+  ExportDialog& d = dialog();
+  const auto refused = [&] {
+    start();
+    return d.refused();
+  };
+  d.size[0] = 63;
+  EXPECT_EQ(refused(), "Sides of a picture are 64 to 8192 px, not 63 × 180.");
+  d.size[0] = 321;
+  EXPECT_EQ(refused(), "Sides of a video are even numbers, not 321 × 180 px.");
+  d.size[0] = 320;
+  d.rate = 0;
+  EXPECT_EQ(refused(), "A video has 1 to 240 pictures a second, not 0.");
+  d.rate = 30;
+  d.speed = std::nan("");
+  EXPECT_EQ(refused(), "A video runs at 0.01562 to 8 times real time, not nan.");
+  d.speed = 1;
+  d.to = std::nan("");
+  EXPECT_EQ(refused().find("Nothing lies between 0.00 and nan"), 0u) << d.refused();
+  EXPECT_TRUE(exports().empty());
+}
+
+TEST_F(ExportDialogTest, tab_goes_from_number_to_number) {
+  connect_keyboard();
+  open_rocking();
+  run_to(0.2);
+  open_export(ExportDialog::What::picture);
+  for (int i = 0; i < 5; ++i) frame();
+  tap(GLFW_KEY_TAB);  // the path
+  tap(GLFW_KEY_TAB);
+  type("640");
+  tap(GLFW_KEY_TAB);
+  type("360");
+  tap(GLFW_KEY_TAB);
+  EXPECT_EQ(std::pair(dialog().size[0], dialog().size[1]), std::pair(640, 360));
 }
 
 TEST_F(ExportDialogTest, before_there_is_an_instant_nothing_is_exported) {
