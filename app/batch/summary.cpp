@@ -304,7 +304,7 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
       {"peak_tilt_deg", &study::BodyError::peak_tilt_error, 1 / k_degrees},
       {"peak_slide_m", &study::BodyError::peak_slide_error, 1},
       {"peak_stress_Pa", &study::BodyError::peak_stress_error, 1}};
-  const std::vector<study::BodyError> errors = study::errors(setup.model, run, finer);
+  const std::vector<study::BodyError> errors = study::errors(setup, run, finer);
   ordered_json bodies = ordered_json::array(), disagreements = ordered_json::array();
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const study::BodyError& e = errors[b];

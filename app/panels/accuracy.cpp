@@ -29,7 +29,7 @@ void work(const Setup& setup, Accuracy& background) {
     if (found.failure.empty() && !background.stopped()) {
       const Outcome finer = outcome_of(study::refined(setup), k_first_share, 1 - k_first_share);
       if (found.failure.empty() && !background.stopped())
-        found.errors = study::errors(setup.model, outcome, finer);
+        found.errors = study::errors(setup, outcome, finer);
     }
   } catch (const std::exception& error) {
     found.failure = error.what();

@@ -12,6 +12,31 @@ double error(double coarse, double fine, double least) {
   return std::max(k_error_of_difference * std::abs(coarse - fine), least);
 }
 
+/// 1/s, Housner 1963's p of the edge of its base about which it falls fastest; 0 without a base.
+double frequency_parameter(const Body& body, double gravity) {
+  const std::vector<Vec3>& corners = body.support_polygon;
+  double squared = 0;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Vec3 edge = (corners[(i + 1) % corners.size()] - corners[i]).normalized();
+    const Vec3 arm = body.centre_of_gravity - corners[i], across = arm - edge.dot(arm) * edge;
+    const double moment = body.mass * across.norm();
+    squared = std::max(squared, gravity * moment / (edge.dot(body.inertia * edge) + moment * across.norm()));
+  }
+  return std::sqrt(squared);
+}
+
+/// Of the time at which it overturns. What falls slowly began near the motion that ends balanced: as it
+/// leaves that with e^(pt) and comes near the critical angle with e^(-pt), it is beyond that angle later by
+/// ln(4)/2p when it began a quarter as far away. What is left of that distance at finer steps loses as much
+/// again at the finest.
+double overturn_error(double coarse, double fine, double p) {
+  constexpr double k_least_left = 0.01;  // what is nearer than that may as well stay
+  const double linear = error(coarse, fine, k_least_time_error);
+  if (p == 0) return linear;
+  const double left = k_error_of_difference * std::exp(2 * p * (coarse - fine)) - (k_error_of_difference - 1);
+  return std::max(linear, -std::log(std::max(left, k_least_left)) / (2 * p));
+}
+
 /// Before it overturned; 0 of what did not.
 int impacts_before(const BodyOutcome& body) {
   return body.beyond_since ? static_cast<int>(ranges::count_if(
@@ -29,7 +54,8 @@ Setup refined(const Setup& setup) {
   return finer;
 }
 
-std::vector<BodyError> errors(const Model& model, const Outcome& run, const Outcome& finer) {
+std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outcome& finer) {
+  const Model& model = setup.model;
   std::vector<BodyError> list;
   for (int b = 0; b < model.furniture_total(); ++b) {
     const BodyOutcome &coarse = run.bodies()[b], &fine = finer.bodies()[b];
@@ -44,7 +70,9 @@ std::vector<BodyError> errors(const Model& model, const Outcome& run, const Outc
     e.overturn_refined = fine.beyond_since;
     if (e.same_verdict()) {
       if (e.overturned)
-        e.overturn_error = error(*coarse.beyond_since, *fine.beyond_since, k_least_time_error);
+        e.overturn_error =
+            overturn_error(*coarse.beyond_since, *fine.beyond_since,
+                           frequency_parameter(model.bodies[b], setup.parameters.gravity.norm()));
       e.peak_tilt_error = error(coarse.peak_tilt, fine.peak_tilt, k_least_tilt_error);
       e.peak_slide_error = error(coarse.peak_slide, fine.peak_slide, k_least_slide_error);
       if (!e.overturned && !coarse.always_rigid && !fine.always_rigid)

@@ -30,7 +30,8 @@ inline constexpr double k_least_stress_error = 5e-4;  ///< of the stress
 /// tolerance at fixed steps too. Not for statics.
 Setup refined(const Setup& setup);
 
-/// Stated errors of one body: k_error_of_difference times the difference. Absent: the quantity does not exist
+/// Stated errors of one body: k_error_of_difference times the difference; more of the time of a fall which
+/// comes later at finer steps, as what nearly balances takes ever longer. Absent: the quantity does not exist
 /// in one of the runs, or the two part in the verdict, or in how often it met the floor before it fell: then
 /// small differences decide. Of what fell the stress is that of its landing, whose error follows no order.
 struct BodyError {
@@ -46,7 +47,7 @@ struct BodyError {
   bool same_verdict() const { return overturned == overturned_refined && impacts == impacts_refined; }
 };
 
-/// One of each body of `run` that is furniture. Both are outcomes of the same model.
-std::vector<BodyError> errors(const Model& model, const Outcome& run, const Outcome& finer);
+/// One of each body of `run` that is furniture. Both are outcomes of `setup`, but for their steps.
+std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outcome& finer);
 
 }  // namespace topple::study

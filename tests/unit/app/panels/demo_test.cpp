@@ -108,7 +108,7 @@ TEST(AccuracyTest, errors_are_those_of_the_two_runs_it_stands_for) {
   topple::Run run(scene->setup), finer(fine);
   while (!run.over()) run.advance();
   while (!finer.over()) finer.advance();
-  const auto expected = study::errors(scene->setup.model, run.outcome(), finer.outcome());
+  const auto expected = study::errors(scene->setup, run.outcome(), finer.outcome());
   const auto accuracy = estimate_accuracy(scene->setup);
   ASSERT_TRUE(eventually([] {}, [&] { return accuracy->over(); }));
   const AccuracyResult result = *accuracy->result();
