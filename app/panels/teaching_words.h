@@ -223,7 +223,7 @@ inline constexpr Phrase k_unsure{
     "{0}: a finer computation takes another course, so whether it overturns stays open.",
     "{0}：刻みを細かくすると経過が変わるため、転倒するかどうかは決められません。"};
 inline constexpr Phrase k_estimate_note{
-    "Errors of the time stepping alone, for the run from the start with the parameters as they were.",
-    "開始時から現在のパラメーターで計算した場合の、時間積分による誤差のみを示します。"};
+    "Errors of the time stepping alone, of the run from the start with what was set when you asked.",
+    "評価を始めたときのパラメーターで開始時から計算した場合の、時間積分による誤差のみを示します。"};
 
 }  // namespace topple::app::window_words

@@ -37,9 +37,10 @@ inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°
 inline constexpr Phrase k_leaning{"leans {0:.1f}° of {1:.1f}°", "傾斜 {0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_standing{"standing", "直立"};
 inline constexpr Phrase k_in_the_air{"in the air, tilt {0:.0f}°", "空中、傾斜 {0:.0f}°"};
-inline constexpr Phrase k_slid{", slid {0:.0f} mm", "、すべり {0:.0f} mm"};
+inline constexpr Phrase k_slid{", foot slid {0:.0f} mm", "、足元のすべり {0:.0f} mm"};
 inline constexpr Phrase k_title_changed{"{0} (changed)", "{0}（変更あり）"};
-inline constexpr Phrase k_slid_farthest{", {0} slid {1:.0f} mm", "、{0}が最大 {1:.0f} mm すべった"};
+inline constexpr Phrase k_slid_farthest{", {0}'s foot slid {1:.0f} mm",
+                                        "、{0}の足元が最大 {1:.0f} mm すべった"};
 inline constexpr Phrase k_all_stand{"all {0} stand", "{0}体すべて直立"};
 inline constexpr Phrase k_other_stands{"1 other stands", "ほか1体は直立"};
 inline constexpr Phrase k_others_stand{"{0} others stand", "ほか{0}体は直立"};

@@ -245,6 +245,7 @@ function showNow(now) {
     row.textContent = line;
     return row;
   }));
+  byId('colours').hidden = !now.quantity;  // nothing has a stress
   byId('legend').hidden = !now.quantity || !page.drawable;
   const legend = JSON.stringify(
     [now.quantity, now.unit, now.minimum, now.maximum, now.signed, now.notes, now.range, dark()]);

@@ -94,7 +94,7 @@ TEST(Words, what_turns_about_an_edge_has_not_slid) {
     EXPECT_GT(now.slide, 0.02);
     EXPECT_EQ(body_in_words(model, scene.setup.parameters.gravity, row, 0),
               fmt::format("free: tipped, rests at 30.0° (critical {:.1f}°){}", now.critical_angle * k_degrees,
-                          slid > 0 ? ", slid 7 mm" : ""));
+                          slid > 0 ? ", foot slid 7 mm" : ""));
   }
 }
 
