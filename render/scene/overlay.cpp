@@ -140,10 +140,8 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
   const float inset = std::round(9 * at.unit);
   const float plot_left = left + inset;
   const float plot_right = right - inset;
-  const std::string label = shortened(*at.fonts.small, trace.label, plot_right - plot_left);
-  at.text(at.fonts.small, plot_left, top + std::round(5 * at.unit), at.colours.text, label);
-
-  const float plot_top = top + std::round(5 * at.unit) + small_line;
+  const float label_top = top + std::round(5 * at.unit);
+  const float plot_top = label_top + small_line;
   const float plot_bottom = bottom - std::round(3 * at.unit) - small_line;
   float peak = 0;
   bool negative = false;
@@ -151,6 +149,16 @@ void draw_trace(const Layout& at, const Trace& trace, float bottom, std::vector<
     peak = std::max(peak, std::abs(s.value));
     negative = negative || s.value < 0;
   }
+  // What the plot reaches up to, over its right end, with three digits.
+  std::string reach;
+  if (peak > 0) {
+    const int decimals = std::clamp(2 - static_cast<int>(std::floor(std::log10(peak))), 0, 4);
+    reach = (negative ? "\u00b1" : "") + number(peak, decimals);
+  }
+  const float reach_width = text_width(*at.fonts.small, reach);
+  at.text(at.fonts.small, plot_right - reach_width, label_top, at.colours.quiet, reach);
+  at.text(at.fonts.small, plot_left, label_top, at.colours.text,
+          shortened(*at.fonts.small, trace.label, plot_right - reach_width - inset - plot_left));
   const float zero_y = std::round(negative ? (plot_top + plot_bottom) / 2 : plot_bottom);
   const float scale = peak > 0 ? (zero_y - plot_top) / peak : 0;
   at.list.AddRectFilled({plot_left, zero_y}, {plot_right, zero_y + 1}, at.colours.axis);
