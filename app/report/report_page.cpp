@@ -111,10 +111,11 @@ bool verdict_is_open(const ReportPage& page) {
   return e.contains("disagreements") && !e["disagreements"].empty();
 }
 
-/// Who is hit, and who has no way out any more.
-std::string harms(const ReportPage& page) {
+/// Who is hit, and whose way out is closed or the narrowest.
+std::string people(const ReportPage& page) {
   std::string out;
-  for (const ordered_json& way : page.report().summary.value("ways", ordered_json::array())) {
+  const ordered_json ways = page.report().summary.value("ways", ordered_json::array());
+  for (const ordered_json& way : ways) {
     const auto place = way["place"].get<std::string>();
     for (const ordered_json& hit : way["hit_by"])
       out += page.say(words::k_is_hit, place, hit["body"].get<std::string>(),
@@ -126,6 +127,12 @@ std::string harms(const ReportPage& page) {
     if (way["open"] == false && way["before"]["open"] == true)
       out += page.say(way["caught"] == true ? words::k_is_caught : words::k_is_shut_in, place, blocked) + " ";
   }
+  const auto width = [](const ordered_json& way) { return way["widest_m"].get<double>(); };
+  if (!ways.empty() &&
+      std::ranges::all_of(ways, [](const ordered_json& way) { return way["open"] == true; })) {
+    const ordered_json& narrowest = *std::ranges::min_element(ways, {}, width);
+    out += page.say(words::k_ways_stay, shown(width(narrowest), 2), narrowest["place"].get<std::string>());
+  }
   return out;
 }
 
@@ -133,7 +140,7 @@ std::string result(const ReportPage& page) {
   const Report& report = page.report();
   const std::vector<std::size_t> falls = fallen(page);
   std::string out = page.paragraph(verdict(page), "verdict");
-  if (const std::string told = harms(page); !told.empty()) out += page.paragraph(told, "verdict");
+  if (const std::string told = people(page); !told.empty()) out += page.paragraph(told, "verdict");
   if (!report.page.empty())
     out += page.paragraph("<a href=\"" + escaped(address_of(report.page)) + "\">" +
                           page.say(report.page_is_live ? words::k_live_page : words::k_replay_page) + "</a>");

@@ -43,6 +43,8 @@ inline constexpr Phrase k_is_shut_in{"“{0}” has no way out any more: {1}.",
                                      "「{0}」から扉まで通れなくなる（{1}）。"};
 inline constexpr Phrase k_is_caught{"“{0}” cannot leave: blocked where they are by {1}.",
                                     "「{0}」の居場所に{1}がかかり、動けない。"};
+inline constexpr Phrase k_ways_stay{"Every place keeps a way out; the narrowest is {0} m wide, from “{1}”.",
+                                    "どの場所からも出口まで通れる（最も狭い経路は「{1}」から、幅 {0} m）。"};
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};
 inline constexpr Phrase k_replay_page{"Page that replays this run", "この計算結果を再生するページ"};

@@ -171,6 +171,7 @@ TEST_F(ReportPageTest, the_plan_of_a_room_has_all_its_walls) {
   tell_of(scene);
   report_.nodes_at_start = report_.nodes_at_end = scene.setup.model.node_position;
   const std::string html = page();
+  EXPECT_TRUE(holds(html, "Every place keeps a way out; the narrowest is 0.80 m wide, from “desk”."));
   const std::regex wall(
       "<line x1=\"(.*?)\" y1=\"(.*?)\" x2=\"(.*?)\" y2=\"(.*?)\" stroke=\"#222\" stroke-width=\"5\"/>");
   int lines = 0;
