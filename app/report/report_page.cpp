@@ -50,6 +50,16 @@ std::string fall_time(const ReportPage& page, std::size_t body) {
   return shown(page.bodies()[body]["overturn_time_s"].get<double>(), 2);
 }
 
+/// Of those that fall, in their order, all that do when the first does.
+std::string first_of(const ReportPage& page, const std::vector<std::size_t>& falls) {
+  std::string out = page.name(falls[0]);
+  for (std::size_t k = 1; k < falls.size() && fall_time(page, falls[k]) == fall_time(page, falls[0]); ++k) {
+    if (k == k_named_falls) return out + ", …";
+    out += ", " + page.name(falls[k]);
+  }
+  return out;
+}
+
 std::string verdict(const ReportPage& page) {
   const std::vector<std::size_t> falls = fallen(page);
   const std::size_t count = page.bodies().size();
@@ -76,7 +86,8 @@ std::string verdict(const ReportPage& page) {
     return out;
   }
   if (falls.size() > k_named_falls)
-    return page.say(words::k_many_fall, falls.size(), count, page.name(falls[0]), fall_time(page, falls[0]));
+    return page.say(words::k_many_fall, falls.size(), count, first_of(page, falls),
+                    fall_time(page, falls[0]));
   for (const std::size_t b : falls) out += page.say(words::k_falls, page.name(b), fall_time(page, b)) + " ";
   if (falls.size() < count) out += page.say(words::k_others_stay, count - falls.size(), count);
   return out;
@@ -158,7 +169,7 @@ std::string result(const ReportPage& page) {
         tile(page.say(words::k_of, falls.size(), page.bodies().size()), page.say(words::k_figure_overturned));
   if (!falls.empty())
     out += tile(fall_time(page, falls[0]) + " s",
-                page.say(words::k_first_fall) + ": " + escaped(page.name(falls[0])));
+                page.say(words::k_first_fall) + ": " + escaped(first_of(page, falls)));
   else if (!page.bodies().empty())
     out += tile(shown(page.bodies()[most_tilted(page)]["peak_tilt_deg"].get<double>(), 2) + "°",
                 page.say(words::k_greatest_tilt) + ": " + escaped(page.name(most_tilted(page))));

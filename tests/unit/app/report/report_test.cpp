@@ -152,6 +152,18 @@ TEST_F(ReportPageTest, planar_blocks_are_not_said_to_stand_on_springs) {
   EXPECT_TRUE(holds(on_edges, "is a spring"));
 }
 
+TEST_F(ReportPageTest, what_falls_at_one_instant_has_no_order) {
+  const io::Scene scene =
+      io::parse_scene(std::string(k_lone_block) +
+                          "[[block]]\nname = \"twin\"\nsize = [0.4, 0.5, 1.8]\nmass = 50\nat = [0, 3]\n"
+                          "[[block]]\nname = \"late\"\nsize = [0.45, 0.5, 1.8]\nmass = 50\nat = [0, 6]\n",
+                      "s.toml", {"run.duration=4", "shake.1.amplitude=500 gal"});
+  tell_of(scene);
+  report_.tilts.resize(3, report_.tilts[0]);
+  EXPECT_TRUE(report_.summary["bodies"][2]["overturned"].get<bool>());
+  EXPECT_TRUE(holds(page(), "first overturning: box, twin<"));
+}
+
 TEST_F(ReportPageTest, elastic_stresses_are_not_said_to_be_those_of_steel) {
   EXPECT_TRUE(holds(page(), "Stresses are elastic"));
   EXPECT_FALSE(holds(page(), "real steel"));
