@@ -73,7 +73,7 @@ std::string status_of(const Run& run) {
 /// "error_estimate" of the summary of `run`; null when an interrupt came first.
 nlohmann::ordered_json estimate(const io::Scene& scene, const Run& run, std::optional<study::Team>& team,
                                 const RunManner& manner) {
-  const Setup finer = study::refined(scene.setup);
+  const Setup finer = study::compared(scene.setup);
   Run second(finer);
   if (team) second.share(team->share());
   Progress progress(scene.name + ", " + refinement_in_words(finer), "s simulated", finer.run.duration,

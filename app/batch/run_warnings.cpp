@@ -1,7 +1,5 @@
 #include "app/batch/run_warnings.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "app/batch/warning_words.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
@@ -20,6 +19,9 @@
 #include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {
+
+namespace ww = warning_words;
+
 namespace {
 
 constexpr double k_pinched = 0.95;              // 1 - l/L between members
@@ -36,23 +38,17 @@ constexpr double k_elastic_strain = 0.01;       // more than structural metals a
 constexpr double k_most_g = 5;                  // of a shake; records above it are refused
 constexpr double k_numbers_of_interest = 1e-9;  // J, below it shares are rounding
 
-using Warnings = std::vector<std::string>;
+using Warnings = std::vector<Said>;
 
 void warn_of_depth(const Run& run, Warnings& list) {
   const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
   const Model& model = run.setup().model;
   for (std::size_t b = 0; b < bodies.size(); ++b)
     if (bodies[b].peak_penetration > 1)
-      list.push_back(
-          fmt::format("body \"{}\" sank to {:.2f} contact widths: the centre line of a member passed that of "
-                      "the floor or wall; a larger alpha or width holds it",
-                      model.bodies[b].name, bodies[b].peak_penetration));
+      list.push_back(said(ww::k_sank, model.bodies[b].name, bodies[b].peak_penetration));
   for (int b = 0; b < model.furniture_total(); ++b)
     if (bodies[b].peak_pinch > k_pinched)
-      list.push_back(
-          fmt::format("a member of body \"{}\" came within {:.1e} contact widths of another's centre line; a "
-                      "larger alpha keeps them apart",
-                      model.bodies[b].name, 1 - bodies[b].peak_pinch));
+      list.push_back(said(ww::k_pinched_member, model.bodies[b].name, 1 - bodies[b].peak_pinch));
 }
 
 // Of a cabinet its corners meet the floor, and edges where they are asked for.
@@ -67,10 +63,7 @@ void warn_of_pieces(const Run& run, Warnings& list) {
         return plane.normal.dot(run.state().position[i] - plane.point) < -k_sunk;
       });
     if (sunk > 0)
-      list.push_back(fmt::format(
-          "{} of the {} nodes of \"{}\" fell through the floor or a wall with pieces that broke "
-          "off: they meet it at {} points of the body alone; its tilt and slide are means over all",
-          sunk, body.node_count, body.name, body.contact_point_count));
+      list.push_back(said(ww::k_pieces, sunk, body.node_count, body.name, body.contact_point_count));
   }
 }
 
@@ -80,10 +73,7 @@ void warn_of_instability(const Run& run, Warnings& list) {
   const auto unstable =
       std::ranges::find_if(steps, [](const LoadStep& step) { return !step.stability.stable(); });
   if (unstable == steps.end() || !unstable->converged || run.setup().run.statics.control) return;
-  list.push_back(fmt::format(
-      "from load factor {:.6g} on the equilibrium is not stable: under loads that stay it is left; "
-      "run.stop_at = \"instability\" ends the path there",
-      unstable->factor));
+  list.push_back(said(ww::k_not_stable, unstable->factor));
 }
 
 // Of the member whose elements are longest beside the half wave in which what it bears would buckle it, as
@@ -108,11 +98,8 @@ void warn_of_few_elements(const Run& run, Warnings& list) {
     }
   if (!worst) return;
   const int enough = 2 * static_cast<int>(std::ceil(worst->element_count * k_good / fewest / 2));
-  list.push_back(fmt::format(
-      "member \"{}\" of \"{}\" bears {:.4g} kN on {} elements, {:.1f} in a half wave of the line that "
-      "buckles under it: it bends too little, buckles at 10 % more than in theory with 4, at up to 2.3 times "
-      "that with 2, with fewer later or not at all; elements = {} is within 2.4 %",
-      worst->name, model.bodies[worst->body].name, borne / 1e3, worst->element_count, fewest, enough));
+  list.push_back(said(ww::k_few_elements, worst->name, model.bodies[worst->body].name, borne / 1e3,
+                      worst->element_count, fewest, enough));
 }
 
 void warn_of_stress(const Run& run, Warnings& list) {
@@ -135,16 +122,9 @@ void warn_of_stress(const Run& run, Warnings& list) {
     const bool by_ends = model.scheme == Scheme::midpoint && was(ModelLevel::frame);
     if (const double ratio = bodies[b].peak_yield_ratio.value_or(0);
         ratio > k_yielded && was(ModelLevel::elastic) && !by_ends)
-      list.push_back(fmt::format(
-          "the stress in body \"{}\", {:.4g} MPa, is beyond yield while the body was elastic, a section "
-          "bore {:.3g} of its strength: no steel does; model = \"frame\", or \"auto\" where stresses are "
-          "wanted, lets it yield",
-          body.name, 1e-6 * bodies[b].peak_stress, ratio));
+      list.push_back(said(ww::k_beyond_yield, body.name, 1e-6 * bodies[b].peak_stress, ratio));
     if (!yields && bodies[b].peak_stress > k_elastic_strain * stiffest)
-      list.push_back(fmt::format(
-          "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
-          "hinges",
-          body.name, 1e-6 * bodies[b].peak_stress));
+      list.push_back(said(ww::k_beyond_strength, body.name, 1e-6 * bodies[b].peak_stress));
   }
 }
 
@@ -155,11 +135,7 @@ void warn_of_breaks(const Run& run, Warnings& list) {
     if (event.kind == Event::Kind::fracture) ++broken[event.step];
   const auto most = std::ranges::max_element(broken, {}, [](const auto& of) { return of.second; });
   if (most == broken.end() || most->second < 2) return;
-  list.push_back(fmt::format(
-      "{} sections broke in load step {}: when one breaks the path leaps to the next equilibrium, and what "
-      "lies "
-      "between is not seen; more run.load_steps, or run.control by a displacement, may stop there",
-      most->second, most->first));
+  list.push_back(said(ww::k_breaks, most->second, most->first));
 }
 
 // Of the element whose nodes flowed apart or together most.
@@ -180,11 +156,9 @@ void warn_of_stretch(const Run& run, Warnings& list) {
   }
   if (worst < 0) return;
   const Member& member = model.members[model.elements[worst].member];
-  list.push_back(fmt::format(
-      "element {} of member \"{}\" of \"{}\" became {:.0f} % {}, which no steel does: what is computed from "
-      "there on is no prediction; with a fracture_strain of its material it breaks",
-      worst - member.first_element, member.name, model.bodies[member.body].name, 100 * std::abs(most),
-      most > 0 ? "longer" : "shorter"));
+  list.push_back(said(ww::k_stretched, worst - member.first_element, member.name,
+                      model.bodies[member.body].name, 100 * std::abs(most),
+                      most > 0 ? ww::k_longer : ww::k_shorter));
 }
 
 // Of fixed steps; adaptive ones follow what happens.
@@ -194,84 +168,59 @@ void warn_of_step(const Run& run, Warnings& list) {
   const double h = p.time_step;
   for (const Shake& shake : p.shakes)
     if (traits(shake.kind).has_record && h > k_same_interval * shake.record->interval)
-      list.push_back(fmt::format(
-          "time_step {:g} ms is longer than the {:g} ms between the samples of a record: what lies between "
-          "steps is not seen",
-          1e3 * h, 1e3 * shake.record->interval));
+      list.push_back(said(ww::k_record_step, 1e3 * h, 1e3 * shake.record->interval));
   double bounce = std::numeric_limits<double>::infinity();
   for (int b = 0; b < model.furniture_total(); ++b)
     if (traits(base_level(model, p, b).level).moves_nodes)
       if (const double period = contact_period(model, b, p.contact, p.gravity); period > 0)
         bounce = std::min(bounce, period);
   if (h > bounce / k_resolved_bounce)
-    list.push_back(
-        fmt::format("a bounce on the contacts takes {:.2g} ms, {:.2g} steps: impacts are not "
-                    "resolved; try a time_step below {:.2g} ms, or \"auto\"",
-                    1e3 * bounce, bounce / h, 1e3 * bounce / (2 * k_resolved_bounce)));
+    list.push_back(said(ww::k_bounce, 1e3 * bounce, bounce / h, 1e3 * bounce / (2 * k_resolved_bounce)));
   const double chatter = model.planes.empty() ? 0 : study::step_of_chatter(p.contact, p.gravity.norm());
-  if (chatter > 0 && h > chatter)
-    list.push_back(
-        fmt::format("time_step {:g} ms is longer than 2 slip_speed/(friction g) = {:.3g} ms: "
-                    "friction changes sides from step to step",
-                    1e3 * h, 1e3 * chatter));
+  if (chatter > 0 && h > chatter) list.push_back(said(ww::k_chatter, 1e3 * h, 1e3 * chatter));
 }
 
 void warn_of_law(const Run& run, Warnings& list) {
   const ContactLawTraits& law = traits(run.parameters().contact);
-  if (law.warning && !run.setup().model.planes.empty())
-    list.push_back(fmt::format("law = \"{}\" {}", law.word, law.warning));
+  if (!law.trusted && !run.setup().model.planes.empty()) list.push_back(said(ww::k_law, law.word));
 }
 
 void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
   const bool by_tolerance = run.parameters().adaptive && !traits(run.parameters().integrator).is_explicit;
-  const char* const finer = by_tolerance ? "try a smaller tolerance" : "try a smaller time_step";
+  const Phrase& finer = by_tolerance ? ww::k_try_tolerance : ww::k_try_step;
   double weight = 0;
   for (const Body& body : run.setup().model.bodies) weight += body.mass * run.parameters().gravity.norm();
   if (const double balance = e.balance_error();
       balance > k_good_balance && balance * e.largest > k_hardly_lifts * weight)
-    list.push_back(fmt::format("energy balance error {:.1e} (of the {:.2g} J exchanged) is above {:.0e}; {}",
-                               balance, e.largest, k_good_balance, finer));
+    list.push_back(said(ww::k_balance, balance, e.largest, k_good_balance, finer));
   if (e.largest >= k_numbers_of_interest && std::abs(e.model_switch) > k_switched * e.largest)
-    list.push_back(
-        fmt::format("bodies that changed their model {} {:.3g} J, {:.0f} % of the largest energy exchanged; "
-                    "model = \"frame\" follows them through it",
-                    e.model_switch > 0 ? "got" : "lost", std::abs(e.model_switch),
-                    100 * std::abs(e.model_switch) / e.largest));
+    list.push_back(said(ww::k_switched, e.model_switch > 0 ? ww::k_got : ww::k_lost, std::abs(e.model_switch),
+                        100 * std::abs(e.model_switch) / e.largest));
   const double share = std::abs(e.numerical) / e.largest;
   if (e.largest < k_numbers_of_interest || share < k_numerical) return;
   const Parameters& p = run.parameters();
   const bool damping_newmark = p.integrator == Integrator::newmark && p.gamma > 0.5;
-  list.push_back(fmt::format("the time integration {} {:.3g} J, {:.0f} % of the largest energy exchanged; {}",
-                             e.numerical > 0 ? "took" : "gave", std::abs(e.numerical), 100 * share,
-                             e.numerical > 0 && damping_newmark
-                                 ? "gamma above 1/2 damps rigid motion too, generalized-alpha does not"
-                                 : finer));
+  list.push_back(said(ww::k_numerical, e.numerical > 0 ? ww::k_took : ww::k_gave, std::abs(e.numerical),
+                      100 * share, e.numerical > 0 && damping_newmark ? ww::k_try_alpha_method : finer));
 }
 
 }  // namespace
 
-void warn_of_shakes(const std::vector<Shake>& shakes, double output_rate, std::vector<std::string>& list) {
+void warn_of_shakes(const std::vector<Shake>& shakes, double output_rate, std::vector<Said>& list) {
   for (std::size_t k = 0; k < shakes.size(); ++k) {
     if (!rows_follow(shakes[k], output_rate))
-      list.push_back(
-          fmt::format("shake {} of {:.4g} Hz is too fast for rows at {:.4g} Hz: the floor is drawn and "
-                      "exported as another motion; run.output_rate = \"{:.4g} Hz\" follows it",
-                      k + 1, highest_frequency(shakes[k]), output_rate,
-                      2 * k_rows_in_period * highest_frequency(shakes[k])));
+      list.push_back(said(ww::k_too_fast, k + 1, highest_frequency(shakes[k]), output_rate,
+                          2 * k_rows_in_period * highest_frequency(shakes[k])));
     if (traits(shakes[k].kind).has_amplitude && shakes[k].amplitude > k_most_g * k_standard_gravity)
-      list.push_back(
-          fmt::format("shake {} has {:.4g} gal, {:.3g} times gravity; a number without a unit is in m/s^2",
-                      k + 1, shakes[k].amplitude / k_gal, shakes[k].amplitude / k_standard_gravity));
+      list.push_back(said(ww::k_too_strong, k + 1, shakes[k].amplitude / k_gal,
+                          shakes[k].amplitude / k_standard_gravity));
   }
 }
 
-std::vector<std::string> run_warnings(const Run& run) {
+std::vector<Said> run_warnings(const Run& run) {
   Warnings list;
-  if (run.counted_from() > 0)
-    list.push_back(fmt::format(
-        "it went on from a recording: peaks, impacts, falls and anchors are counted from {:.3f} s on",
-        run.counted_from()));
+  if (run.counted_from() > 0) list.push_back(said(ww::k_went_on, run.counted_from()));
   warn_of_depth(run, list);
   warn_of_shakes(run.parameters().shakes, run.setup().run.output_rate, list);
   warn_of_stress(run, list);

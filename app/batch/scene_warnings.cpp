@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/batch/run_warnings.h"
+#include "app/batch/warning_words.h"
 #include "solver/body/anchors.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_default.h"
@@ -179,17 +180,20 @@ double alpha_for_tipping(const Model& model, const Parameters& p) {
 
 }  // namespace
 
+std::optional<Said> soft_contact(const Setup& setup, const Parameters& p) {
+  if (setup.run.analysis != Analysis::dynamic) return std::nullopt;
+  const std::optional<double> early = early_tipping(setup.model, p);
+  if (!early || !rigid_alpha(setup.model, p.contact, p.gravity) || *early <= k_early) return std::nullopt;
+  return said(warning_words::k_soft, p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.));
+}
+
 std::string soft_contact_warning(const Setup& setup, const Parameters& p) {
   const Model& model = setup.model;
-  if (setup.run.analysis != Analysis::dynamic) return "";
-  const std::optional<double> early = early_tipping(model, p);
+  const std::optional<Said> soft = soft_contact(setup, p);
+  if (!soft) return "";
   const std::optional<double> rigid = rigid_alpha(model, p.contact, p.gravity);
-  if (!early || !rigid || *early <= k_early) return "";
   const double most = io::key_of(Edit::Key::alpha).most, enough = alpha_for_tipping(model, p);
-  std::string words = fmt::format(
-      "contact.alpha = {:.4g} kgf is soft: under a steady push a body lifts a side, and may tip, at up to "
-      "{:.0f} % less acceleration than on a rigid floor, in a shake at still less; ",
-      p.contact.alpha / k_standard_gravity, std::min(100 * *early, 100.));
+  std::string words = soft->english + "; ";
   if (enough < most)
     words += fmt::format("{:.0f} kgf keeps that of a steady push below {:g} %; ",
                          rounded_up(enough / k_standard_gravity), 100 * k_hardly);
@@ -229,7 +233,9 @@ std::vector<std::string> scene_warnings(const Setup& setup) {
   warn_of_overlaps(setup, start, list);
   for (std::string words : {soft_contact_warning(setup, setup.parameters), bending_warning(setup)})
     if (!words.empty()) list.push_back(std::move(words));
-  warn_of_shakes(setup.parameters.shakes, setup.run.output_rate, list);
+  std::vector<Said> of_shakes;
+  warn_of_shakes(setup.parameters.shakes, setup.run.output_rate, of_shakes);
+  for (Said& words : of_shakes) list.push_back(std::move(words.english));
   return list;
 }
 

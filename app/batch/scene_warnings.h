@@ -1,9 +1,11 @@
 // What of a scene will surprise, though nothing is wrong with it.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "app/support/language.h"
 #include "solver/run/run.h"
 
 namespace topple::app {
@@ -15,7 +17,9 @@ namespace topple::app {
 std::vector<std::string> scene_warnings(const Setup& setup);
 
 /// Of contacts so soft that a side lifts at less than 95 % of the steady acceleration that lifts it on a
-/// rigid floor; empty: they are stiffer, or nothing moves. `parameters`: of the scene now.
+/// rigid floor; nothing: they are stiffer, or nothing moves. `parameters`: of the scene now.
+std::optional<Said> soft_contact(const Setup& setup, const Parameters& parameters);
+/// The same with what to do about it; empty where it says nothing.
 std::string soft_contact_warning(const Setup& setup, const Parameters& parameters);
 
 /// Of a room in which many bodies bend more than run.accuracy allows rigid ones to; empty: there are few.

@@ -282,15 +282,19 @@ ordered_json summary(const io::Scene& scene, Run& run, const std::string& status
   }
   out["static"] = load_steps_json(run);
   out["peak_load_factor"] = is_static(run.setup()) ? peak_load_factor(run) : ordered_json(nullptr);
-  out["warnings"] = run_warnings(run);
+  out["warnings"] = ordered_json::array();
+  for (const Said& warning : run_warnings(run)) out["warnings"].push_back(warning.english);
   if (const std::string soft = soft_contact_warning(run.setup(), run.setup().parameters); !soft.empty())
     out["warnings"].push_back(soft);
   return out;
 }
 
 std::string refinement_in_words(const Setup& setup) {
-  const bool by_tolerance = setup.parameters.adaptive && !traits(setup.parameters.integrator).is_explicit;
-  return by_tolerance ? fmt::format("tolerance divided by {:g}", study::k_finer_tolerance) : "step halved";
+  return study::is_by_tolerance(setup.parameters)
+             ? fmt::format("tolerance divided by {:g}, parts of a step by {:g}",
+                           study::k_finer_tolerance * study::k_finer_tolerance,
+                           study::k_finer_step * study::k_finer_step)
+             : "step and its parts halved";
 }
 
 ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcome& finer) {
@@ -305,17 +309,23 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
       {"peak_slide_m", &study::BodyError::peak_slide_error, 1},
       {"peak_stress_Pa", &study::BodyError::peak_stress_error, 1}};
   const std::vector<study::BodyError> errors = study::errors(setup, run, finer);
-  ordered_json bodies = ordered_json::array(), disagreements = ordered_json::array();
+  ordered_json bodies = ordered_json::array(), disagreements = ordered_json::array(),
+               parted = ordered_json::array();
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const study::BodyError& e = errors[b];
     ordered_json body{{"name", setup.model.bodies[b].name},
                       {"same_verdict", e.same_verdict()},
-                      {"falls_refined", e.overturned_refined}};
+                      {"falls", e.overturned},
+                      {"falls_refined", e.overturned_refined},
+                      {"impacts_refined", e.impacts_refined}};
     for (const Quantity& q : k_quantities) {
       const std::optional<double>& error = e.*q.error;
       body[q.key] = error ? number(*error / q.unit) : ordered_json(nullptr);
     }
     bodies.push_back(std::move(body));
+    if (e.parted())
+      parted.push_back(fmt::format("{} meets the floor {} times, {} times when refined",
+                                   setup.model.bodies[b].name, e.impacts, e.impacts_refined));
     if (e.same_verdict()) continue;
     const auto falls = [&](double t, int impacts) {
       return e.overturned == e.overturned_refined
@@ -338,6 +348,7 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
   out["how"] = refinement_in_words(setup);
   out["error_of_difference"] = study::k_error_of_difference;
   out["disagreements"] = std::move(disagreements);
+  out["parted"] = std::move(parted);
   out["bodies"] = std::move(bodies);
   return out;
 }

@@ -41,7 +41,9 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
     std::string words;
     for (const auto& line : e["disagreements"])
       words += (words.empty() ? "" : "; ") + line.get<std::string>();
-    return begin + "the verdict itself is open: " + words + "\n";
+    const bool open = std::ranges::any_of(
+        e["bodies"], [](const ordered_json& body) { return body["falls"] != body["falls_refined"]; });
+    return begin + (open ? "the verdict itself is open: " : "the two runs part: ") + words + "\n";
   }
   const auto part = [&](const char* name, const char* key, double scale, const char* unit, double least) {
     if (e[key].is_null()) return std::string();
@@ -57,6 +59,7 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
   const bool fell = std::ranges::any_of(
       e["bodies"], [](const ordered_json& body) { return !body["overturn_time_s"].is_null(); });
   if (fell && has_stress) words += "; of the stress of a landing it is unknown";
+  for (const auto& line : e["parted"]) words += "; " + line.get<std::string>() + ": one course of many";
   return begin + words + "\n";
 }
 
@@ -159,6 +162,8 @@ std::string integrators(const ordered_json& s) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
+constexpr double k_slides = 1e-3;  // m, above creep on its contacts
+
 std::string allowed_error(const ordered_json& s, const ordered_json& body, const ordered_json& change) {
   const ordered_json &estimate = change["error_estimate"], &fell = body["overturn_time_s"];
   if (level_called(change["model"].get<std::string>()).moves_nodes) return "";
@@ -167,6 +172,7 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
   if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool may_strike =
       body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
+  const ordered_json slid = body.value("peak_slide_m", ordered_json());
   // of a block soft contacts are in it, up to a landing, but not those that stand for a hard floor
   const char* const until = change["model"] == "planar" ? " until it lands" : " until it lifts";
   const std::string bounds =
@@ -175,7 +181,8 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
                         until)
       : body["impacts"].get<int>() > 0 ? fmt::format("{}; leaning and landing enlarge that", until)
       : !body["first_beyond_critical_s"].is_null() ? fmt::format("{}; leaning enlarges that", until)
-                                                   : "";
+      : slid.is_number() && slid > k_slides ? " until it slides; legs that bend back as it slips enlarge that"
+                                            : "";
   const double error = estimate.get<double>();
   const std::string off =
       error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error);

@@ -104,7 +104,7 @@ void add_run(Commands& commands) {
       ->excludes(&jobs);
   command.add_flag(
       "--estimate", run.estimate,
-      "run it again at half the step (or a tenth of the tolerance) for the error, at three times "
+      "run it again at half the step (or a hundredth of the tolerance) for the error, at three times "
       "the cost");
 }
 

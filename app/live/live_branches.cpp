@@ -154,6 +154,7 @@ void LiveWorker::fork(const Fork& from) {
   history_.branches.push_back(branch);
   status_.branch = branch.id;
   status_.message.clear();
+  status_.warnings.clear();
   if (recorder_) recorder_->post(branch);
   publish([&branch](LiveReport& report) {
     report.branches.push_back(branch);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/support/language.h"
 #include "solver/io/recording/recording.h"
 #include "solver/io/scene/scene.h"
 #include "solver/run/history.h"
@@ -33,6 +34,7 @@ struct LiveStatus {
   double achieved = 0;         ///< going: simulated s per wall s over the last half second
   std::int64_t forks = 0;      ///< asked for and dealt with
   std::string message;         ///< failed: what, when, where, what to try
+  std::vector<Said> warnings;  ///< over
   int element = -1;            ///< failed: where; -1: not an element's fault
   std::string recording;       ///< path; empty: nothing is recorded yet
   std::string record_failure;  ///< why the recording broke off; empty: it did not

@@ -118,6 +118,7 @@ void LiveWorker::obey(const Command& command) {
 
 void LiveWorker::change(const std::vector<Edit>& edits) {
   status_.message.clear();
+  status_.warnings.clear();
   status_.element = -1;
   if (status_.kind == LiveStatus::Kind::failed) status_.kind = LiveStatus::Kind::halted;
   run_->edit(edits);
@@ -183,10 +184,9 @@ void LiveWorker::step_once() {
   record(observer_.last(*run_));
   going_ = false;
   status_.kind = LiveStatus::Kind::over;
-  std::vector<std::string> warnings = run_warnings(*run_);
-  if (const std::string soft = soft_contact_warning(run_->setup(), run_->parameters()); !soft.empty())
-    warnings.push_back(soft.substr(0, soft.find(';')));  // what to do about it is told by `check`
-  status_.message = fmt::format("{}", fmt::join(warnings, "; "));
+  status_.warnings = run_warnings(*run_);
+  if (const std::optional<Said> soft = soft_contact(run_->setup(), run_->parameters()))
+    status_.warnings.push_back(*soft);
 }
 
 // Steps until the next report is due, or the run is ahead of its pace.

@@ -55,7 +55,8 @@ bool Player::update(double wall_s) {
   LiveReport report = run_.take();
   bool news = report.head || !report.rows.empty() || !report.edits.empty() || !report.branches.empty() ||
               !report.events.empty() || !report.stabilities.empty() || report.status.kind != status_.kind ||
-              report.status.message != status_.message || report.status.achieved != status_.achieved ||
+              report.status.message != status_.message || report.status.warnings != status_.warnings ||
+              report.status.achieved != status_.achieved ||
               report.status.record_failure != status_.record_failure;
   take(std::move(report));
   if (at_tail && replay()) cursor_ = end();

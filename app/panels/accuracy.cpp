@@ -9,7 +9,7 @@
 namespace topple::app {
 namespace {
 
-// Of all the work, the run at the scene's own steps: the other one makes twice as many.
+// Of all the work, the run at the scene's own steps: the other one makes twice as many or more.
 constexpr double k_first_share = 1. / 3;
 
 void work(const Setup& setup, Accuracy& background) {
@@ -27,9 +27,8 @@ void work(const Setup& setup, Accuracy& background) {
     const Outcome outcome = outcome_of(setup, 0, k_first_share);
     found.bodies = outcome.bodies();
     if (found.failure.empty() && !background.stopped()) {
-      const Outcome finer = outcome_of(study::refined(setup), k_first_share, 1 - k_first_share);
-      if (found.failure.empty() && !background.stopped())
-        found.errors = study::errors(setup, outcome, finer);
+      const Outcome finer = outcome_of(study::compared(setup), k_first_share, 1 - k_first_share);
+      if (found.failure.empty() && !background.stopped()) found.errors = study::errors(setup, outcome, finer);
     }
   } catch (const std::exception& error) {
     found.failure = error.what();
@@ -60,6 +59,9 @@ std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyRes
     else if (error.overturned)
       lines.push_back(say(k_sure_fall, name, error.overturn_time.value_or(0),
                           rounded_up(error.overturn_error.value_or(0), 1e-3)));
+    else if (error.parted())
+      lines.push_back(say(k_other_course, name, result.bodies[b].peak_tilt * k_degrees, error.impacts,
+                          error.impacts_refined));
     else
       lines.push_back(say(k_sure_stay, name, result.bodies[b].peak_tilt * k_degrees,
                           rounded_up(error.peak_tilt_error.value_or(0) * k_degrees, 0.01)));

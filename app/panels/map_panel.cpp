@@ -8,6 +8,7 @@
 #include "app/chart/lane.h"
 #include "app/chart/log_chart.h"
 #include "app/panels/teaching_words.h"
+#include "solver/body/model_level.h"
 #include "solver/io/edit/edit_text.h"
 
 namespace topple::app {
@@ -239,6 +240,10 @@ void show(const std::shared_ptr<const OverturnFound>& found, MapState& state) {
     const study::Criteria& criteria = found->map.criteria;
     state.soft_limit.reset();
     if (!criteria.list.empty()) state.soft_limit = study::soft_limit(criteria.body, state.of.contact);
+    state.bends.clear();
+    const Model& model = found->plan->scene.setup.model;
+    for (int b = 0; b < model.furniture_total() && found->map.planar > 0 && state.bends.empty(); ++b)
+      if (base_level(model, state.of, b).reason == LevelReason::bending) state.bends = model.bodies[b].name;
   }
   state.shown = found;
   state.shown_of = state.of;
@@ -317,6 +322,11 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
   if (!curves.empty()) key.lines(curves);
   add_present(list, key.entry(say(k_present)));
   key.end();
+  if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of)) {
+    ImGui::TextWrapped("%s", say(k_map_stale).c_str());  // what follows would be of another shake
+    draw_steps(player, *found, refused);
+    return true;
+  }
   if (!curves.empty())
     ImGui::TextWrapped(
         "%s", (say(k_map_lines, found->map.criteria.bodies) +
@@ -327,9 +337,8 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
         "%s", say(plan.scene.setup.parameters.shakes.front().building ? k_building_between : k_map_no_lines)
                   .c_str());
   ImGui::TextWrapped("%s", present_in_words(*found, player.parameters()).c_str());
+  if (!state.bends.empty()) ImGui::TextWrapped("%s", say(k_map_rigid, state.bends).c_str());
   draw_steps(player, *found, refused);
-  if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of))
-    ImGui::TextWrapped("%s", say(k_map_stale).c_str());
   return true;
 }
 
@@ -344,7 +353,8 @@ void draw_map_controls(const Player& player, MapState& state) {
                        "");
     return;
   }
-  if (state.follows == Follows::yes) {
+  const bool failed = found && !busy && !found->plan;  // as of a shake askew, until the sliders move again
+  if (state.follows == Follows::yes && !failed) {
     ImGui::TextDisabled("%s", say(k_map_follows).c_str());
   } else {
     if (searching) {
@@ -354,11 +364,13 @@ void draw_map_controls(const Player& player, MapState& state) {
       if (ImGui::Button((say(k_cancel) + "##cancel-map").c_str())) state.search->stop();
       return;
     }
-    if (found && !found->failure.empty()) ImGui::TextWrapped("%s", say(k_map_failed, found->failure).c_str());
+    if (found && !found->failure.empty())
+      ImGui::TextWrapped("%s", state.follows == Follows::yes ? say(k_map_cannot_follow).c_str()
+                                                             : say(k_map_failed, found->failure).c_str());
     const bool can = can_have_map(player);
     ImGui::BeginDisabled(!can);
-    const bool asked = ImGui::Button((say(found ? k_map_again : k_overturning_map) + "##map").c_str(),
-                                     {found ? 0.f : -1.f, 0});
+    const bool asked = ImGui::Button((say(state.shown ? k_map_again : k_overturning_map) + "##map").c_str(),
+                                     {found && !failed ? 0.f : -1.f, 0});
     ImGui::EndDisabled();
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
       ImGui::SetTooltip("%s", say(can ? k_map_about : k_map_needs).c_str());
@@ -368,7 +380,7 @@ void draw_map_controls(const Player& player, MapState& state) {
       state.search = search_overturning(player.scene(), state.of);
       return;
     }
-    if (!found) return;
+    if (!found || failed) return;
     ImGui::SameLine();
   }
   if (ImGui::Button((say(k_map_close) + "##close-map").c_str())) {

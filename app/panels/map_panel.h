@@ -19,7 +19,8 @@ struct MapState {
   /// Steady acceleration, m/s^2, that tips the body of the lines of `shown` on the scene's soft contacts;
   /// none: they are nearly rigid, or there are no lines.
   std::optional<double> soft_limit;
-  Box cells;  ///< as drawn last
+  std::string bends;  ///< a body that bends too much to be rigid in the run, but is a block in the map
+  Box cells;          ///< as drawn last
 };
 
 /// What the map says of the shake as it is now: the cell that it lies in, as that of another shake unless it

@@ -98,6 +98,16 @@ inline constexpr Phrase k_map_needs{"Only where furniture is shaken first by a s
                                     "最初の加振が正弦波またはパルスで、家具があるシーンでのみ使えます"};
 inline constexpr Phrase k_map_progress{"Map: {0} of {1} runs", "マップ：{0}/{1} 件を計算"};
 inline constexpr Phrase k_map_failed{"No map: {0}", "マップを作成できません：{0}"};
+inline constexpr Phrase k_map_rigid{
+    "In the map {0} is a rigid block; in the run it bends, and may lift where the map has it still.",
+    "マップでは{0}"
+    "を剛なブロックとしています。実行中の計算では変形するため、マップで静止するところでも浮くことがあります"
+    "。"};
+inline constexpr Phrase k_map_cannot_follow{
+    "The map that follows the sliders is of blocks that move in a plane, which they do not here; from whole "
+    "runs it can be computed.",
+    "スライダーに追従するマップは面内で動くブロックのもので、ここでは使えません。計算を最後まで行うマップは作"
+    "れます。"};
 inline constexpr Phrase k_map_stale{"Other parameters have changed since; compute it again.",
                                     "ほかのパラメーターが変更されました。再計算してください。"};
 inline constexpr Phrase k_map_cell{"{0:.3g} {1}, {2:.4g} {3}: {4}", "{0:.3g} {1}、{2:.4g} {3}：{4}"};
@@ -211,14 +221,20 @@ inline constexpr Phrase k_did_not_come{
 inline constexpr Phrase k_how_accurate{"How accurate is this?", "この計算の精度は？"};
 inline constexpr Phrase k_how_accurate_about{
     "Computes the scene as it is now twice beside the window: at its steps, and at half of them or, where "
-    "they adapt, at a tenth of the tolerance",
-    "現在の設定のシーンを2回計算して比べる：通常の刻みと、半分の刻み（自動刻みでは10分の1の許容誤差）"};
+    "they adapt, at a hundredth of the tolerance",
+    "現在の設定のシーンを2回計算して比べる：通常の刻みと、半分の刻み（自動刻みでは100分の1の許容誤差）"};
 inline constexpr Phrase k_estimating{"Computing: {0:.0f} %", "計算中：{0:.0f} %"};
 inline constexpr Phrase k_estimate_failed{"No estimate: {0}", "精度を評価できません：{0}"};
 inline constexpr Phrase k_sure_fall{"{0}: overturns at {1:.3f} s, ± {2:.3f} s.",
                                     "{0}：{1:.3f} s に転倒（誤差 ±{2:.3f} s）。"};
 inline constexpr Phrase k_sure_stay{"{0}: does not overturn; peak tilt {1:.2f}°, ± {2:.2f}°.",
                                     "{0}：転倒しない。最大傾斜 {1:.2f}°（誤差 ±{2:.2f}°）。"};
+inline constexpr Phrase k_other_course{
+    "{0}: does not overturn; peak tilt {1:.2f}°, but it meets the floor {2} times, {3} times when computed "
+    "finer: one course of many.",
+    "{0}：転倒しない。最大傾斜 {1:.2f}°。ただし床との衝突が {2} 回、刻みを細かくすると {3} "
+    "回で、経過は一通りに"
+    "定まりません。"};
 inline constexpr Phrase k_unsure{
     "{0}: a finer computation takes another course, so whether it overturns stays open.",
     "{0}：刻みを細かくすると経過が変わるため、転倒するかどうかは決められません。"};

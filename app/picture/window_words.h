@@ -52,6 +52,7 @@ inline constexpr Phrase k_count_leaning{"{0} leaning", "傾斜 {0}"};
 inline constexpr Phrase k_count_standing{"{0} standing", "直立 {0}"};
 inline constexpr Phrase k_comma{", ", "、"};
 inline constexpr Phrase k_colon{": ", "："};
+inline constexpr Phrase k_semicolon{"; ", "。"};
 inline constexpr Phrase k_more{"+ {0} more", "ほか{0}体"};
 
 inline constexpr Phrase k_strap{"strap", "ベルト"};

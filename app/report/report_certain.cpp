@@ -119,10 +119,10 @@ std::string error(const ReportPage& page) {
   const ordered_json& estimate = page.report().summary["error_estimate"];
   const Parameters& p = page.report().scene->setup.parameters;
   std::string out = "<h3>" + page.say(words::k_error) + "</h3>\n";
-  const bool by_tolerance = p.adaptive && !traits(p.integrator).is_explicit;
   const std::string how =
-      by_tolerance
-          ? page.text(words::k_tightened, short_shown(p.tolerance / study::k_finer_tolerance))
+      study::is_by_tolerance(p)
+          ? page.text(words::k_tightened,
+                      short_shown(study::compared(page.report().scene->setup).parameters.tolerance))
           : page.text(words::k_halved, short_shown(1e3 * page.report().summary["time_step_s"].get<double>() /
                                                    study::k_finer_step));
   out += page.paragraph(
@@ -131,6 +131,8 @@ std::string error(const ReportPage& page) {
     out += page.paragraph(page.say(words::k_error_failed, estimate["failed"].get<std::string>()));
   else if (!estimate["disagreements"].empty())
     out += page.paragraph(page.say(words::k_error_open, disagreements(page, estimate)), "notice");
+  for (const ordered_json& body : estimate.value("parted", ordered_json::array()))
+    out += page.paragraph(page.say(words::k_error_parted, body.get<std::string>()), "notice");
   if (const ordered_json& balance = page.report().summary["energy"]["balance_error"]; !balance.is_null())
     out += page.paragraph(page.say(words::k_balance, short_shown(100 * balance.get<double>(), 2)));
   const ordered_json& warnings = page.report().summary["warnings"];

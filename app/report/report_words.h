@@ -333,7 +333,9 @@ inline constexpr Phrase k_no_probability{
 inline constexpr Phrase k_error{"Numerical error", "数値誤差"};
 inline constexpr Phrase k_halved{"half the step ({0} ms, and half the parts of rigid and elastic bodies)",
                                  "半分の時間刻み（{0} ms。剛体・弾性体の内部刻みも半分）"};
-inline constexpr Phrase k_tightened{"a tenth of the tolerance ({0})", "10分の1の許容誤差（{0}）"};
+inline constexpr Phrase k_tightened{
+    "a hundredth of the tolerance ({0}, and a quarter of the parts of rigid and elastic bodies)",
+    "100分の1の許容誤差（{0}。剛体・弾性体の内部刻みは4分の1）"};
 inline constexpr Phrase k_error_text{
     "The run was repeated with {0}. The stated error, ± in section {1}, is {2} times the difference between "
     "the two: "
@@ -354,6 +356,9 @@ inline constexpr Phrase k_open_impacts{
     "「{0}」は{1}秒で転倒するが、それまでの衝突回数が細かい計算と異なる"};
 inline constexpr Phrase k_open_stays{"“{0}” stays standing, but overturns in the finer run",
                                      "「{0}」は転倒しないが、細かい計算では転倒する"};
+inline constexpr Phrase k_error_parted{
+    "{0}: one course of many, of whose peaks the stated errors tell little.",
+    "{0}：経過は一通りに定まらず、最大値の誤差は目安にすぎない。"};
 inline constexpr Phrase k_error_failed{"The finer run failed ({0}); the error is not known.",
                                        "細かい計算が失敗したため（{0}）、誤差は不明である。"};
 inline constexpr Phrase k_balance{"Energy that nothing explains: {0} % of the largest energy exchanged.",

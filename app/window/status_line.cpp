@@ -29,6 +29,13 @@ bool is_restarted(const Player& player) {
   return player.ghost_branch() && shown != branches.end() && shown->fork_step == 0 && player.row()->step == 0;
 }
 
+std::string joined(const std::vector<Said>& warnings) {
+  std::string out;
+  for (const Said& warning : warnings)
+    out += (out.empty() ? "" : say(k_semicolon)) + in(window_language(), warning);
+  return out;
+}
+
 std::string paused_in_words(const Player& player) {
   return is_restarted(player) ? say(k_restarted, player.shown_branch(), *player.ghost_branch())
                               : say(k_paused);
@@ -54,7 +61,7 @@ std::string status_in_words(const Player& player) {
     case LiveStatus::Kind::over:
       if (player.at_head())
         return (loads ? say(k_loads_done) : say(k_run_ended, player.time())) + say(k_after_end) +
-               (status.message.empty() ? "" : say(k_warns, status.message));
+               (status.warnings.empty() ? "" : say(k_warns, joined(status.warnings)));
       break;
     default:
       break;

@@ -42,7 +42,8 @@ void set_keyboard_navigation(bool on) {
 
 bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::FrameRow>& b) {
   if (!a || !b) return a.has_value() == b.has_value();
-  return a->time == b->time && a->step == b->step && a->branch == b->branch;
+  // an edit of what does not go on puts anchors in place and takes them away
+  return a->time == b->time && a->step == b->step && a->branch == b->branch && a->anchor == b->anchor;
 }
 
 }  // namespace

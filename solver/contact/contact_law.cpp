@@ -169,7 +169,7 @@ constexpr ContactLawTraits k_laws[] = {
      .evaluate = coulomb,
      .at_new_velocity = coulomb_at_new_velocity,
      .normal_loss = by_restitution,
-     .warning = nullptr},
+     .trusted = true},
     {.kind = ContactLawKind::paper,
      .word = "paper",
      .stores_energy = true,
@@ -179,7 +179,7 @@ constexpr ContactLawTraits k_laws[] = {
      .evaluate = paper,
      .at_new_velocity = nullptr,
      .normal_loss = by_friction,
-     .warning = nullptr},
+     .trusted = true},
     {.kind = ContactLawKind::printed,
      .word = "printed",
      .stores_energy = false,
@@ -189,9 +189,7 @@ constexpr ContactLawTraits k_laws[] = {
      .evaluate = printed,
      .at_new_velocity = nullptr,
      .normal_loss = by_friction,
-     .warning =
-         "holds bodies back where they part and lets them sink at rest: verdicts with it mean nothing; "
-         "\"coulomb\" and \"paper\" do neither"},
+     .trusted = false},
 };
 
 ContactOutput evaluate(const ContactLaw& law, const ContactInput& in, ContactDerivatives derivatives) {

@@ -105,8 +105,7 @@ struct ContactLawTraits {
   /// The input's velocity is where the iteration begins, and then v. Null: solve with contact_force.
   ContactOutput (*at_new_velocity)(const ContactLaw&, ContactInput&, double impedance, const Vec3& free);
   NormalLoss (*normal_loss)(const ContactLaw&);
-  /// Warning of every run with this law, or null.
-  const char* warning;
+  bool trusted;  ///< false: verdicts with it mean nothing
 };
 
 /// All laws, in the order in which lists show them.

@@ -311,6 +311,8 @@ void Outcome::observe_pose(const Model& model, const State& state, std::size_t b
     o.beyond_since =
         crossed ? time_before + (state.time - time_before) * before / (before - beyond) : state.time;
     if (!o.first_beyond) o.first_beyond = o.beyond_since;
+    o.beyond = o.peak;  // should it come back
+    o.peak = {o.tilt / o.critical, o.critical};
     events.push_back({.kind = Event::Kind::overturn,
                       .step = state.step,
                       .time = *o.beyond_since,

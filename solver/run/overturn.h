@@ -92,8 +92,8 @@ struct BodyOutcome {
   struct Nearest {
     double share = 0, critical = 0;
   };
-  Nearest peak;                        ///< until it overturned
-  Nearest beyond;                      ///< since it has been beyond the critical angle: it may come back
+  Nearest peak;                        ///< so far; of what overturned that of the moment when it did
+  Nearest beyond;                      ///< so far, while it is beyond the critical angle: it may come back
   std::optional<double> beyond_since;  ///< the tilt has been beyond the critical angle since: overturned
   std::optional<double> first_beyond;  ///< it came there first, whether it came back or not
   std::optional<double> first_uplift;

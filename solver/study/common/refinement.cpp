@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/frame/integrator.h"
 #include "solver/math/ranges.h"
 
 namespace topple::study {
@@ -37,11 +38,11 @@ double overturn_error(double coarse, double fine, double p) {
   return std::max(linear, -std::log(std::max(left, k_least_left)) / (2 * p));
 }
 
-/// Before it overturned; 0 of what did not.
-int impacts_before(const BodyOutcome& body) {
+/// Before it overturned, or in all.
+int impacts_of(const BodyOutcome& body) {
   return body.beyond_since ? static_cast<int>(ranges::count_if(
                                  body.impact_times, [&](double t) { return t < *body.beyond_since; }))
-                           : 0;
+                           : body.impacts;
 }
 
 }  // namespace
@@ -54,6 +55,14 @@ Setup refined(const Setup& setup) {
   return finer;
 }
 
+Setup compared(const Setup& setup) {
+  return is_by_tolerance(setup.parameters) ? refined(refined(setup)) : refined(setup);
+}
+
+bool is_by_tolerance(const Parameters& parameters) {
+  return parameters.adaptive && !traits(parameters.integrator).is_explicit;
+}
+
 std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outcome& finer) {
   const Model& model = setup.model;
   std::vector<BodyError> list;
@@ -62,10 +71,8 @@ std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outc
     BodyError e;
     e.overturned = coarse.beyond_since.has_value();
     e.overturned_refined = fine.beyond_since.has_value();
-    if (e.overturned && e.overturned_refined) {
-      e.impacts = impacts_before(coarse);
-      e.impacts_refined = impacts_before(fine);
-    }
+    e.impacts = impacts_of(coarse);
+    e.impacts_refined = impacts_of(fine);
     e.overturn_time = coarse.beyond_since;
     e.overturn_refined = fine.beyond_since;
     if (e.same_verdict()) {

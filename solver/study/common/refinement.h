@@ -1,6 +1,8 @@
 // How far a run is from itself at finer steps: the error of its time stepping.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +18,7 @@ inline constexpr double k_finer_step = 2;
 
 /// Error over the difference between the two runs. At half the step a method of order p leaves 2^p/(2^p - 1)
 /// of the difference: 2 at first order, to which contacts that open and close bring any method; 4/3 at
-/// second. At a tenth of the tolerance it is 1.1 where errors go with the tolerance, 1.5 with its root.
+/// second. At a hundredth of the tolerance it is 1.01 where errors go with the tolerance, 1.1 with its root.
 inline constexpr double k_error_of_difference = 2;
 
 /// Stated errors are not below these. A difference that small says nothing: errors of opposite signs meet in
@@ -29,6 +31,11 @@ inline constexpr double k_least_stress_error = 5e-4;  ///< of the stress
 /// The same run at half the step and a tenth of the tolerance; implicit substeps of rigid bodies follow the
 /// tolerance at fixed steps too. Not for statics.
 Setup refined(const Setup& setup);
+/// With which a run is compared for its error: refined once, or twice where its steps adapt: those of a tenth
+/// of the tolerance are not always so much shorter that they would show it.
+Setup compared(const Setup& setup);
+/// Whether steps follow the tolerance.
+bool is_by_tolerance(const Parameters& parameters);
 
 /// Stated errors of one body: k_error_of_difference times the difference; more of the time of a fall which
 /// comes later at finer steps, as what nearly balances takes ever longer. Absent: the quantity does not exist
@@ -36,7 +43,7 @@ Setup refined(const Setup& setup);
 /// small differences decide. Of what fell the stress is that of its landing, whose error follows no order.
 struct BodyError {
   bool overturned = false, overturned_refined = false;
-  int impacts = 0, impacts_refined = 0;     ///< before it overturned
+  int impacts = 0, impacts_refined = 0;     ///< before it overturned, or in all
   std::optional<double> overturn_time;      ///< s, of the run
   std::optional<double> overturn_refined;   ///< s, of the finer one
   std::optional<double> overturn_error;     ///< s
@@ -44,7 +51,16 @@ struct BodyError {
   std::optional<double> peak_slide_error;   ///< m
   std::optional<double> peak_stress_error;  ///< Pa
 
-  bool same_verdict() const { return overturned == overturned_refined && impacts == impacts_refined; }
+  bool same_verdict() const {
+    return overturned == overturned_refined && (!overturned || impacts == impacts_refined);
+  }
+  /// What stands meets the floor so much more or less often that it is on another course, of which its errors
+  /// tell little.
+  bool parted() const {
+    constexpr double k_few = 0.1;
+    return !overturned && !overturned_refined &&
+           std::abs(impacts - impacts_refined) > k_few * std::max(impacts, impacts_refined);
+  }
 };
 
 /// One of each body of `run` that is furniture. Both are outcomes of `setup`, but for their steps.

@@ -33,7 +33,7 @@ void expect_stated(const io::Scene& scene, double finer) {
   exact.parameters.substep_refinement *= finer;
   exact.parameters.tolerance /= finer * finer;
   const Outcome run = outcome(setup), truth = outcome(exact);
-  const std::vector<BodyError> stated = errors(setup, run, outcome(refined(setup)));
+  const std::vector<BodyError> stated = errors(setup, run, outcome(compared(setup)));
   ASSERT_EQ(stated.size(), static_cast<std::size_t>(setup.model.furniture_total()));
   for (std::size_t b = 0; b < stated.size(); ++b) {
     const BodyOutcome &found = run.bodies()[b], &exactly = truth.bodies()[b];
@@ -89,7 +89,7 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_the_stress_of_what_stand
       exact.parameters.time_step /= 16;
       exact.parameters.substep_refinement *= 16;
       const Outcome run = outcome(scene.setup), truth = outcome(exact);
-      const BodyError stated = errors(scene.setup, run, outcome(refined(scene.setup)))[1];
+      const BodyError stated = errors(scene.setup, run, outcome(compared(scene.setup)))[1];
       ASSERT_TRUE(stated.peak_stress_error);
       EXPECT_LE(std::abs(run.bodies()[1].peak_stress - truth.bodies()[1].peak_stress),
                 k_slack * *stated.peak_stress_error);
@@ -101,7 +101,7 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_the_stress_of_what_stand
 TEST(Refinement, no_error_is_stated_of_the_stress_of_a_landing) {
   const topple::Setup setup =
       io::load_scene("paper-a", {"run.duration=4 s", "run.time_step=2 ms", "contact.alpha=20000 kgf"}).setup;
-  const std::vector<BodyError> stated = errors(setup, outcome(setup), outcome(refined(setup)));
+  const std::vector<BodyError> stated = errors(setup, outcome(setup), outcome(compared(setup)));
   EXPECT_TRUE(stated[0].overturned && stated[0].same_verdict());
   EXPECT_TRUE(stated[0].overturn_error && !stated[0].peak_stress_error);
 }
@@ -116,7 +116,7 @@ TEST(Refinement, another_number_of_impacts_before_the_fall_leaves_the_verdict_op
                                   "shake = [{ type = \"sine\", frequency = 1, amplitude = 1.6, taper = 1 }]",
                                   "shelf.toml")
                                   .setup;
-  const std::vector<BodyError> stated = errors(setup, outcome(setup), outcome(refined(setup)));
+  const std::vector<BodyError> stated = errors(setup, outcome(setup), outcome(compared(setup)));
   EXPECT_TRUE(stated[0].overturned && stated[0].overturned_refined);
   EXPECT_NE(stated[0].impacts, stated[0].impacts_refined);
   EXPECT_FALSE(stated[0].same_verdict() || stated[0].overturn_error);

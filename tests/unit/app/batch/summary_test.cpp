@@ -257,7 +257,8 @@ TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
   const std::string words = e["disagreements"][0];
   EXPECT_TRUE(words.starts_with("free does not overturn, but at ")) << words;
   EXPECT_NE(summary_table(s).find(
-                "error of the time integration (step halved): the verdict itself is open: " + words + "\n"),
+                "error of the time integration (step and its parts halved): the verdict itself is open: " +
+                words + "\n"),
             std::string::npos);
   EXPECT_EQ(error_estimate(scene_.setup, falls.outcome(), run_.outcome())["disagreements"][0]
                 .get<std::string>()

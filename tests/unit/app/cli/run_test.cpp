@@ -151,11 +151,12 @@ TEST_F(RunTest, an_estimate_of_the_error_stands_in_summary_table_and_recording) 
   const Ended ended = topple({"run", "s.toml", "--estimate", "-o", "a.h5", "--json", "a.json"});
   EXPECT_EQ(ended.code, 0);
   EXPECT_TRUE(only_soft(ended.err)) << ended.err;
-  EXPECT_NE(ended.out.find("\nerror of the time integration (step halved): peak tilt "), std::string::npos)
+  EXPECT_NE(ended.out.find("\nerror of the time integration (step and its parts halved): peak tilt "),
+            std::string::npos)
       << ended.out;
   const Json s = json_of(bytes_of("a.json")), &e = s["error_estimate"];
   ASSERT_TRUE(e.is_object());
-  EXPECT_EQ(e["how"], "step halved");
+  EXPECT_EQ(e["how"], "step and its parts halved");
   EXPECT_TRUE(e["overturn_time_s"].is_null());  // nothing falls
   EXPECT_GT(e["peak_tilt_deg"], 0);
   EXPECT_LT(e["peak_tilt_deg"], s["bodies"][0]["peak_tilt_deg"]);
@@ -176,8 +177,10 @@ TEST_F(RunTest, an_estimate_of_the_error_stands_in_summary_table_and_recording) 
 TEST_F(RunTest, the_error_of_an_adaptive_run_is_that_of_its_tolerance) {
   const Ended ended = topple({"run", "s.toml", "--estimate", "--set", "run.time_step=auto"});
   EXPECT_EQ(ended.code, 0);
-  EXPECT_NE(ended.out.find("\nerror of the time integration (tolerance divided by 10): peak tilt "),
-            std::string::npos)
+  EXPECT_NE(
+      ended.out.find(
+          "\nerror of the time integration (tolerance divided by 100, parts of a step by 4): peak tilt "),
+      std::string::npos)
       << ended.out;
 }
 

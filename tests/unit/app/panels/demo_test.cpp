@@ -104,7 +104,7 @@ TEST_F(DemoTest, what_does_not_come_about_is_said) {
 
 TEST(AccuracyTest, errors_are_those_of_the_two_runs_it_stands_for) {
   const auto scene = live_scene(k_rocking, {"run.duration=0.3"});
-  const topple::Setup fine = study::refined(scene->setup);
+  const topple::Setup fine = study::compared(scene->setup);
   topple::Run run(scene->setup), finer(fine);
   while (!run.over()) run.advance();
   while (!finer.over()) finer.advance();

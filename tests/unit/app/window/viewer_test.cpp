@@ -172,11 +172,29 @@ TEST_F(ViewerTest, a_box_takes_an_anchor_away) {
   start(&topple::Run::advance, k_rocking + k_straps);
   const ImVec2 at = box_of("strong", "anchor.2.on");
   ASSERT_GE(at.x, 0);
+  const auto red = [&](bool on) {
+    EXPECT_TRUE(until([&] { return (player_->row()->anchor[1].state != io::k_anchor_away) == on; }));
+    for (int i = 0; i < 5; ++i) frame();
+    const render::Image image = shot();
+    const Box& box = viewer_->scene_box();
+    int count = 0;
+    for (int y = static_cast<int>(box.top); y < static_cast<int>(box.top + box.height); ++y)
+      for (int x = static_cast<int>(box.left); x < static_cast<int>(box.left + box.width); ++x) {
+        const auto [r, g, b] = render::colour_at(image, {x, y});
+        count += r > 140 && r > 3 * g / 2 && r > 3 * b / 2;
+      }
+    return count;
+  };
+  const int both = red(true);
   click(at);
   EXPECT_FALSE(player_->parameters().anchors[1]);
   EXPECT_TRUE(player_->parameters().anchors[0]);
+  const int one = red(false);
+  EXPECT_LT(one, both);  // seen at once, though nothing runs
+  EXPECT_GT(one, 0);
   click(at);
   EXPECT_TRUE(player_->parameters().anchors[1]);
+  EXPECT_GT(red(true), one);
 }
 
 TEST_F(ViewerTest, a_box_takes_a_fixing_with_all_its_points_away_and_the_scene_can_be_saved) {

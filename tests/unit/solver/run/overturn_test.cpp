@@ -332,6 +332,30 @@ TEST(Overturn, block_released_below_the_critical_angle_returns_and_above_it_fall
     }
 }
 
+TEST(Overturn, what_came_back_from_farther_overturns_at_its_own_angle_and_keeps_the_farther_if_it_returns) {
+  const Standing upright = standing(0);
+  Outcome outcome(upright.model, std::vector<BodyStart>(upright.model.bodies.size()));
+  std::vector<Event> events;
+  std::vector<SectionForces> sections;
+  std::int64_t step = 0;
+  const auto share_after = [&](double share) {
+    Simulation there = released(share * k_edge_angle, 1000);
+    there.state.step = step++;
+    there.state.time = 0.1 * static_cast<double>(step);
+    section_forces(there.model, there.state, sections);
+    outcome.observe(there.model, there.parameters, there.state, there.contacts(), {}, sections, events);
+    return outcome.bodies()[0].peak.share;
+  };
+  constexpr double k_close = 1e-3;  // as released, the frame has not bent yet
+  EXPECT_NEAR(share_after(0.3), 0.3, k_close);
+  EXPECT_NEAR(share_after(1.5), 1.5, k_close);
+  EXPECT_NEAR(share_after(-0.5), 1.5, k_close);
+  EXPECT_NEAR(share_after(-1.02), 1.02, k_close);
+  EXPECT_NEAR(share_after(-1.3), 1.02, k_close);
+  EXPECT_NEAR(share_after(0), 1.5, k_close);
+  EXPECT_NEAR(share_after(-1.1), 1.1, k_close);
+}
+
 TEST(Overturn, rocking_run_lifts_and_lands_on_alternate_sides) {
   Simulation sim = released(0.6 * k_edge_angle, 500);
   const Observed o = watch(sim, 2.5);
