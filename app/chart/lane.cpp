@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
+#include "render/scene/text_layout.h"
 #include "render/scene/ticks.h"
 
 namespace topple::app {
@@ -88,6 +90,14 @@ void add_curve(ImDrawList& list, const Lane& lane, std::span<const float> places
 
 void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text) {
   list.AddText({std::round(x), std::round(y)}, colour, text.c_str());
+}
+
+void text_wrapped(const std::string& text) {
+  std::string lines;
+  for (const std::string& line : render::wrapped(*ImGui::GetFont(), text, ImGui::GetContentRegionAvail().x,
+                                                 std::numeric_limits<int>::max()))
+    lines += (lines.empty() ? "" : "\n") + line;
+  ImGui::TextUnformatted(lines.c_str());
 }
 
 float text_width(const std::string& text) {

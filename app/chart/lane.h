@@ -45,6 +45,9 @@ void add_curve(ImDrawList& list, const Lane& lane, std::span<const RowPtr> rows,
 
 void add_text(ImDrawList& list, float x, float y, ImU32 colour, const std::string& text);
 float text_width(const std::string& text);
+/// Below each other in the panel, as many lines as it takes; numbers stay whole, as ImGui::TextWrapped does
+/// not keep them.
+void text_wrapped(const std::string& text);
 
 /// Ticks and times below a lane; of a static run load factors, or where displacements are controlled load
 /// steps, with their name at `label_left`.

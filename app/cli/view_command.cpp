@@ -21,6 +21,7 @@ namespace {
 constexpr double k_frame = 1. / 60;   // s, least time between two pictures
 constexpr double k_idle_wait = 0.1;   // s, how often an idle window looks for Ctrl+C
 constexpr int k_frames_of_input = 3;  // Dear ImGui shows the effect of input one or two frames later
+constexpr int k_frames_of_news = 2;   // it knows how long a text is once it was drawn
 
 /// A Dear ImGui context that lasts as long as the window.
 struct Interface {
@@ -59,7 +60,7 @@ void show(render::Window& window, render::Stage& stage, Shell& shell) {
       window.poll_events();
     const Clock::time_point now = Clock::now();
     if (const std::vector<std::string> dropped = window.take_drops(); !dropped.empty()) shell.drop(dropped);
-    if (shell.update(Seconds(now - last).count())) frames_due = std::max(frames_due, 1);
+    if (shell.update(Seconds(now - last).count())) frames_due = std::max(frames_due, k_frames_of_news);
     last = now;
     for (const render::KeyPress& press : window.take_keys()) shell.press(press);
     if (shell.take_full_screen()) window.toggle_full_screen();

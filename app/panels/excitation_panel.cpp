@@ -121,7 +121,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const auto furniture = model.furniture_total();
   const Parameters& parameters = player.parameters();
   if (shakes.front().building) {
-    ImGui::TextWrapped("%s", say(k_building_between).c_str());
+    text_wrapped(say(k_building_between));
     return;
   }
   if (!state.body || !has_limits(model, parameters, *state.body)) {
@@ -130,7 +130,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
       if (has_limits(model, parameters, b)) state.body = b;
   }
   if (!state.body) {
-    ImGui::TextWrapped("%s", why_none(model, parameters).c_str());
+    text_wrapped(why_none(model, parameters));
     return;
   }
   ImGui::AlignTextToFramePadding();
@@ -156,7 +156,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
   const ShakePlace now = state.path.back();
   const bool record = traits(shakes.front().kind).has_record;
   const Phrase& by_criteria = verdict(limits, now);
-  const auto write = [](const std::string& words) { ImGui::TextWrapped("%s", words.c_str()); };
+  const auto write = [](const std::string& words) { text_wrapped(words); };
   write(say(record ? k_verdict_record : k_verdict, now.frequency, now.amplitude / k_gal, say(by_criteria)));
   const std::string held = held_in_words(player, *state.body);
   const std::string words = held.empty() ? difference_in_words(player, *state.body, limits, now) : held;
@@ -171,7 +171,7 @@ void draw_criteria(const Player& player, TeachingState& state) {
 void draw_excitation(Player& player, TeachingState& state, std::string& refused) {
   const auto& shakes = player.parameters().shakes;
   if (shakes.empty()) {
-    ImGui::TextWrapped("%s", say(k_no_floor_shake).c_str());
+    text_wrapped(say(k_no_floor_shake));
     return;
   }
   const Shake& shake = shakes.front();

@@ -188,7 +188,7 @@ void draw_integration_points(const Inspected& at, const Member& member) {
   circle(second, below + line / 2, theme().text);
   add_text(list, second + 2.2f * r, below, theme().text, say(k_stresses_at));
   ImGui::Dummy({width, below + 1.15f * line - low.y});
-  ImGui::TextWrapped("%s", say(k_s_of_elements, places).c_str());
+  text_wrapped(say(k_s_of_elements, places));
 }
 
 bool has_value(const std::vector<float>& samples) {
@@ -232,7 +232,7 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
     ImGui::PushStyleColor(
         ImGuiCol_Text,
         ImGui::GetColorU32(std::exchange(first, false) ? ImGuiCol_TextDisabled : ImGuiCol_Text));
-    ImGui::TextWrapped("%s", line.c_str());
+    text_wrapped(line);
     ImGui::PopStyleColor();
   }
   return pressed;
@@ -241,7 +241,7 @@ bool draw_heading(const Inspected& at, const Subject& subject, bool pinned) {
 /// True when another component is to be drawn in the scene.
 bool draw_member(const Inspected& at, const Subject& subject) {
   draw_values(at, subject, k_first_component_value);
-  if (is_approximate(at.model, at.row, subject.index)) ImGui::TextWrapped("%s", say(k_approximate).c_str());
+  if (is_approximate(at.model, at.row, subject.index)) text_wrapped(say(k_approximate));
   const std::size_t drawn = component_of(at.model, at.row, {subject.index, at.inspection.component});
   const float gap = ImGui::GetStyle().ItemSpacing.x;
   const ImVec2 size{(ImGui::GetContentRegionAvail().x - gap) / 2, 4.3f * ImGui::GetTextLineHeight()};
@@ -284,7 +284,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
       draw_history(at, subject, 0);
     }
   } else {
-    ImGui::TextWrapped("%s", say(k_how_to_inspect).c_str());
+    text_wrapped(say(k_how_to_inspect));
     for (std::size_t b = 0; b < static_cast<std::size_t>(model.furniture_total()); ++b)
       if (ImGui::Selectable(model.bodies[b].name.c_str())) {
         inspection.picked = Subject{Subject::Kind::body, b};
@@ -304,7 +304,7 @@ bool draw_inspector(const Player& player, const io::FrameRow& row, Histories& hi
     inspection.pinned.erase(inspection.pinned.begin() + static_cast<std::ptrdiff_t>(unpinned));
   const std::vector<std::string>& ways = inspection.ways.of(player, row);
   if (!ways.empty()) ImGui::Separator();
-  for (const std::string& line : ways) ImGui::TextWrapped("%s", line.c_str());
+  for (const std::string& line : ways) text_wrapped(line);
   ImGui::EndChild();
   return changed;
 }

@@ -323,21 +323,19 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
   add_present(list, key.entry(say(k_present)));
   key.end();
   if (state.follows != MapState::Follows::yes && has_changed(player, plan, state.shown_of)) {
-    ImGui::TextWrapped("%s", say(k_map_stale).c_str());  // what follows would be of another shake
+    text_wrapped(say(k_map_stale));  // what follows would be of another shake
     draw_steps(player, *found, refused);
     return true;
   }
   if (!curves.empty())
-    ImGui::TextWrapped(
-        "%s", (say(k_map_lines, found->map.criteria.bodies) +
-               (state.soft_limit ? say(k_full_stop) + " " + say(k_map_soft, *state.soft_limit / k_gal) : ""))
-                  .c_str());
+    text_wrapped(
+        (say(k_map_lines, found->map.criteria.bodies) +
+         (state.soft_limit ? say(k_full_stop) + " " + say(k_map_soft, *state.soft_limit / k_gal) : "")));
   else if (!found->map.criteria.why_not.empty())  // else they are not there yet
-    ImGui::TextWrapped(
-        "%s", say(plan.scene.setup.parameters.shakes.front().building ? k_building_between : k_map_no_lines)
-                  .c_str());
-  ImGui::TextWrapped("%s", present_in_words(*found, player.parameters()).c_str());
-  if (!state.bends.empty()) ImGui::TextWrapped("%s", say(k_map_rigid, state.bends).c_str());
+    text_wrapped(
+        say(plan.scene.setup.parameters.shakes.front().building ? k_building_between : k_map_no_lines));
+  text_wrapped(present_in_words(*found, player.parameters()));
+  if (!state.bends.empty()) text_wrapped(say(k_map_rigid, state.bends));
   draw_steps(player, *found, refused);
   return true;
 }
@@ -365,8 +363,8 @@ void draw_map_controls(const Player& player, MapState& state) {
       return;
     }
     if (found && !found->failure.empty())
-      ImGui::TextWrapped("%s", state.follows == Follows::yes ? say(k_map_cannot_follow).c_str()
-                                                             : say(k_map_failed, found->failure).c_str());
+      text_wrapped(state.follows == Follows::yes ? say(k_map_cannot_follow)
+                                                 : say(k_map_failed, found->failure));
     const bool can = can_have_map(player);
     ImGui::BeginDisabled(!can);
     const bool asked = ImGui::Button((say(state.shown ? k_map_again : k_overturning_map) + "##map").c_str(),

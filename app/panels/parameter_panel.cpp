@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "app/chart/lane.h"
 #include "app/panels/computed.h"
 #include "app/panels/panels.h"
 #include "app/panels/precision_words.h"
@@ -417,9 +418,9 @@ bool draw_parameters(Player& player, std::string& refused) {
   }
   ImGui::EndDisabled();
   if (!heading)
-    ImGui::TextWrapped("%s", say(k_no_parameters).c_str());
+    text_wrapped(say(k_no_parameters));
   else if (!player.can_edit() && !player.way().empty())
-    ImGui::TextWrapped("%s", say(k_past_values).c_str());
+    text_wrapped(say(k_past_values));
   return precision;
 }
 

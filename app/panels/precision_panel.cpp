@@ -276,7 +276,7 @@ void draw_precision(Player& player, PrecisionState& state, std::string& refused)
   const auto found = state.search->result();
   std::vector<PrecisionPoint>& points = state.points;
   if (found && !found->failure.empty()) {
-    ImGui::TextWrapped("%s", say(k_precision_failed, found->failure).c_str());
+    text_wrapped(say(k_precision_failed, found->failure));
   } else if (found) {
     draw_measure(state.measure);
     const int present = present_case(player, *found, state.measure);
@@ -284,21 +284,18 @@ void draw_precision(Player& player, PrecisionState& state, std::string& refused)
     handle_mouse(player, *found, points, state.measure, refused);
     const study::Reference& reference = found->study.references.front();
     if (reference.run < 0)
-      ImGui::TextWrapped("%s", say(k_no_errors_yet).c_str());
+      text_wrapped(say(k_no_errors_yet));
     else if (points.empty())
-      ImGui::TextWrapped("%s", say(k_no_such_error).c_str());
+      text_wrapped(say(k_no_such_error));
     else
-      ImGui::TextWrapped("%s",
-                         (present >= 0 ? say(k_setting_now, point_in_words(*found, present, state.measure))
-                                       : say(k_setting_not_there))
-                             .c_str());
+      text_wrapped((present >= 0 ? say(k_setting_now, point_in_words(*found, present, state.measure))
+                                 : say(k_setting_not_there)));
     if (reference.run >= 0)
-      ImGui::TextWrapped("%s", say(k_precision_reference, setting_in_words(*found, reference.run),
-                                   setting_in_words(*found, reference.check), reference.window)
-                                   .c_str());
+      text_wrapped(say(k_precision_reference, setting_in_words(*found, reference.run),
+                       setting_in_words(*found, reference.check), reference.window));
     if (!points.empty()) draw_steps(player, *found, present, state.measure, refused);
     if (parameters_differ(player.scene().setup.model, player.parameters(), state.of, is_setting))
-      ImGui::TextWrapped("%s", say(k_map_stale).c_str());
+      text_wrapped(say(k_map_stale));
     if (!points.empty()) ImGui::SameLine();
   }
   draw_controls(player, state, found.get());

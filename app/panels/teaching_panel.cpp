@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "app/chart/lane.h"
 #include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
 
@@ -32,9 +33,8 @@ void draw_presets(Player& player) {
 void draw_guide(TeachingState& state) {
   DemoGuide& guide = *state.guide;
   if (std::exchange(state.begins, false)) ImGui::SetScrollY(0);
-  ImGui::TextWrapped(
-      "%s", say(k_demo_step, say(guide.demo().name), guide.step().value_or(0) + 1, guide.demo().steps.size())
-                .c_str());
+  text_wrapped(
+      say(k_demo_step, say(guide.demo().name), guide.step().value_or(0) + 1, guide.demo().steps.size()));
   ImGui::BeginDisabled(guide.under_way() || guide.step().value_or(0) == 0);
   if (ImGui::Button((say(k_previous) + "##previous").c_str())) guide.previous();
   ImGui::EndDisabled();
@@ -44,7 +44,7 @@ void draw_guide(TeachingState& state) {
   ImGui::EndDisabled();
   ImGui::SameLine();
   const bool quit = ImGui::Button((say(k_quit_demo) + "##quit").c_str());
-  ImGui::TextWrapped("%s", say(guide.text()).c_str());  // below: the buttons stay where they are
+  text_wrapped(say(guide.text()));  // below: the buttons stay where they are
   if (!quit) return;
   guide.leave();
   state.guide.reset();
@@ -58,7 +58,7 @@ void draw_demos(const Player& player, TeachingState& state) {
       if (ImGui::Button((say(demos()[k].name) + fmt::format("##demo{}", k)).c_str(), {-1, 0}))
         state.wanted = k;
   }
-  if (player.scene().name != k_demo_scene) ImGui::TextWrapped("%s", say(k_demo_opens, k_demo_scene).c_str());
+  if (player.scene().name != k_demo_scene) text_wrapped(say(k_demo_opens, k_demo_scene));
   const std::string& before = state.came_from;
   state.back =
       !before.empty() &&
@@ -88,9 +88,8 @@ void draw_accuracy(const Player& player, TeachingState& state) {
     if (ImGui::Button((say(k_cancel) + "##cancel").c_str())) state.accuracy.reset();
   }
   if (!result) return;
-  for (const std::string& line : accuracy_in_words(player.scene().setup.model, *result))
-    ImGui::TextWrapped("%s", line.c_str());
-  if (result->failure.empty()) ImGui::TextWrapped("%s", say(k_estimate_note).c_str());
+  for (const std::string& line : accuracy_in_words(player.scene().setup.model, *result)) text_wrapped(line);
+  if (result->failure.empty()) text_wrapped(say(k_estimate_note));
   if (!std::exchange(state.in_sight, true)) ImGui::SetScrollHereY(1);
 }
 

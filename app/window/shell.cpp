@@ -158,7 +158,6 @@ bool Shell::finish_opening() {
 }
 
 bool Shell::update(double wall_s) {
-  const bool had_message = message_.has_value();
   bool news = finish_opening();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   if (const Appearance fits = fitting(appearance_, scale_, size.x, size.y); !session_ && fits != applied_) {
@@ -184,7 +183,9 @@ bool Shell::update(double wall_s) {
   if (furnishing_) seen = room_->update(wall_s) || seen;
   if (session_) watch_trouble();
   if (demo_) start_demo();
-  if (news || message_.has_value() != had_message) frames_due_ = k_frames_of_news;
+  const std::array over{message_.has_value(), files_.is_open(), save_.is_open(), export_.is_open(),
+                        chooser_.is_open()};
+  if (news || std::exchange(over_, over) != over) frames_due_ = k_frames_of_news;
   if (frames_due_ > 0) --frames_due_;
   return news || seen || opening_ || frames_due_ > 0;
 }

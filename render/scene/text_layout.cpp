@@ -4,6 +4,7 @@
 #include <utf8.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <limits>
 
@@ -37,14 +38,27 @@ bool ends_a_phrase(std::string_view text, std::size_t at) {
   return std::ranges::any_of(k_ends, [&](std::string_view end) { return text.substr(at).starts_with(end); });
 }
 
-/// Where a line may end next after `at`: at a space, or beside a letter that needs none.
+/// Whether what follows the space at `at` is the unit of a number before it.
+bool precedes_a_unit(std::string_view text, std::size_t at) {
+  static constexpr std::string_view k_units[] = {"gal", "Hz", "s",   "mm", "m",     "kN",   "N",   "MPa",
+                                                 "J",   "kg", "kgf", "%",  "rad/s", "cm/s", "m/s", "ms"};
+  if (at == 0 || text[at - 1] < '0' || text[at - 1] > '9') return false;
+  const std::string_view rest = text.substr(at + 1);
+  return std::ranges::any_of(k_units, [&](std::string_view unit) {
+    return rest.starts_with(unit) &&
+           (rest.size() == unit.size() || !std::isalnum(static_cast<unsigned char>(rest[unit.size()])));
+  });
+}
+
+/// Where a line may end next after `at`: at a space that does not part a number from its unit, or beside a
+/// letter that needs none.
 std::size_t next_break(std::string_view text, std::size_t at) {
   auto next = text.begin() + static_cast<std::ptrdiff_t>(at);
   std::uint32_t before = next == text.end() ? 0 : utf8::next(next, text.end());
   while (next != text.end()) {
     const auto i = static_cast<std::size_t>(next - text.begin());
     const std::uint32_t letter = utf8::next(next, text.end());
-    if (letter == ' ') return i;
+    if (letter == ' ' && !precedes_a_unit(text, i)) return i;
     if ((is_ideographic(letter) || is_ideographic(before)) && !ends_a_phrase(text, i)) return i;
     before = letter;
   }

@@ -103,7 +103,7 @@ function showMap(map) {
   byId('nomap').hidden = !map.obstacle;
   if (map.obstacle) return void (byId('nomap').textContent = say('map_none', inWords(map.obstacle)));
   const style = getComputedStyle(document.documentElement);
-  const fills = ['#cfd6dc', '#f2b84b', '#b3261e'], words = ['map_stands', 'map_rocks', 'map_falls'];
+  const fills = ['#e2e9f0', '#a9cbe4', '#a3203a'], words = ['map_stands', 'map_rocks', 'map_falls'];
   const canvas = byId('chart'), brush = canvas.getContext('2d');
   const left = 62, bottom = 290, top = 8, right = 472;
   brush.clearRect(0, 0, canvas.width, canvas.height);
