@@ -36,8 +36,10 @@ io::FrameRow start_row(const Setup& setup) {
     row.body[b].qw = turn.w(), row.body[b].qx = turn.x(), row.body[b].qy = turn.y(),
     row.body[b].qz = turn.z();
   }
-  for (std::size_t k = 0; k < row.anchor.size(); ++k)
+  for (std::size_t k = 0; k < row.anchor.size(); ++k) {
     row.anchor[k].state = setup.parameters.anchors[k] ? io::k_anchor_slack : io::k_anchor_away;
+    row.anchor[k].natural_length = static_cast<float>(model.anchors[k].length);
+  }
   return row;
 }
 

@@ -1,4 +1,5 @@
 #include "app/picture/bridge.h"
+#include "app/furnish/room_picture.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -177,6 +178,13 @@ TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
   EXPECT_LT((place(broken, broken.tubes[3], 0) - at).norm(), 1e-5);
   EXPECT_GT((place(broken, broken.tubes[2], 1) - place(broken, broken.tubes[3], 1)).norm(),
             0.1 * (at - to).norm());
+
+  render::SceneFrame furnished = start_frame(scene);
+  std::erase_if(furnished.tubes,
+                [&](const render::Tube& tube) { return tube.member != model.members.size() + 1; });
+  ASSERT_EQ(furnished.tubes.size(), 3u);
+  const render::Tube& in_room = furnished.tubes[2];
+  EXPECT_LT((place(furnished, in_room, in_room.station_count - 1) - at).norm(), 1e-5);
 
   EXPECT_EQ(drawn(io::k_anchor_away).tubes.size(), 0u);
   EXPECT_EQ(anchor_in_words(model, row, 1), "strap strong: taken away");
