@@ -347,9 +347,9 @@ std::string outcome(const std::string& text, unsigned seed, int most_steps) {
   if (e.largest > 1e-3) {
     EXPECT_LE(worst, k_lost_balance);
   }
-  const std::vector<std::string> warnings = run_warnings(run);
-  const bool warned = std::any_of(warnings.begin(), warnings.end(), [](const std::string& w) {
-    return w.find("energy balance error") != std::string::npos;
+  const std::vector<Said> warnings = run_warnings(run);
+  const bool warned = std::any_of(warnings.begin(), warnings.end(), [](const Said& w) {
+    return w.english.find("energy balance error") != std::string::npos;
   });
   double weight = 0;  // an energy that lifts all by a micrometre at most is not told
   for (const Body& body : model.bodies) weight += body.mass * run.parameters().gravity.norm();
