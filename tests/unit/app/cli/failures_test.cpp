@@ -62,7 +62,7 @@ TEST_F(FailuresTest, a_blow_within_one_step_is_taken_in_parts) {
   EXPECT_LT(json_of(ended.out)["energy"]["balance_error"], 0.1);
 }
 
-// Which of the steps part is rounding: one of three does. At 615 gal the cabinet falls after 2 s, whatever
+// Which of the steps part is rounding: here all three do. At 615 gal the cabinet falls after 2 s, whatever
 // the step.
 TEST_F(FailuresTest, a_verdict_that_flips_with_the_step_is_seen_by_an_estimate) {
   const auto open_verdicts = [](const char* amplitude) {
