@@ -313,11 +313,9 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
                parted = ordered_json::array();
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const study::BodyError& e = errors[b];
-    ordered_json body{{"name", setup.model.bodies[b].name},
-                      {"same_verdict", e.same_verdict()},
-                      {"falls", e.overturned},
-                      {"falls_refined", e.overturned_refined},
-                      {"impacts_refined", e.impacts_refined}};
+    ordered_json body{{"name", setup.model.bodies[b].name},    {"same_verdict", e.same_verdict()},
+                      {"same_course", e.same_course()},        {"falls", e.overturned},
+                      {"falls_refined", e.overturned_refined}, {"impacts_refined", e.impacts_refined}};
     for (const Quantity& q : k_quantities) {
       const std::optional<double>& error = e.*q.error;
       body[q.key] = error ? number(*error / q.unit) : ordered_json(nullptr);
@@ -326,7 +324,7 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
     if (e.parted())
       parted.push_back(fmt::format("{} meets the floor {} times, {} times when refined",
                                    setup.model.bodies[b].name, e.impacts, e.impacts_refined));
-    if (e.same_verdict()) continue;
+    if (e.same_course()) continue;
     const auto falls = [&](double t, int impacts) {
       return e.overturned == e.overturned_refined
                  ? fmt::format("at {:.4f} s after {} impact{}", t, impacts, impacts == 1 ? "" : "s")

@@ -37,17 +37,22 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
   const std::string begin = fmt::format("error of the time integration ({}): ", e["how"].get<std::string>());
   if (e.contains("failed"))
     return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
+  std::string parts;
   if (!e["disagreements"].empty()) {
     std::string words;
     for (const auto& line : e["disagreements"])
       words += (words.empty() ? "" : "; ") + line.get<std::string>();
     const bool open = std::ranges::any_of(
         e["bodies"], [](const ordered_json& body) { return body["falls"] != body["falls_refined"]; });
-    return begin + (open ? "the verdict itself is open: " : "the two runs part: ") + words + "\n";
+    parts = (open ? "the verdict itself is open: " : "the two runs part: ") + words;
+    if (e["disagreements"].size() == e["bodies"].size()) return begin + parts + "\n";
+    parts += "; of the others ";
   }
   const auto part = [&](const char* name, const char* key, double scale, const char* unit, double least) {
-    if (e[key].is_null()) return std::string();
-    const double error = e[key].get<double>();
+    double error = -1;
+    for (const ordered_json& body : e["bodies"])
+      if (!body[key].is_null()) error = std::max(error, body[key].get<double>());
+    if (error < 0) return std::string();
     return fmt::format("{} {}{:.2g} {}, ", name, error > (1 + 1e-9) * least ? "" : "less than ",
                        scale * error, unit);
   };
@@ -60,7 +65,7 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
       e["bodies"], [](const ordered_json& body) { return !body["overturn_time_s"].is_null(); });
   if (fell && has_stress) words += "; of the stress of a landing it is unknown";
   for (const auto& line : e["parted"]) words += "; " + line.get<std::string>() + ": one course of many";
-  return begin + words + "\n";
+  return begin + parts + words + "\n";
 }
 
 std::string static_head(const ordered_json& s) {
@@ -171,21 +176,25 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
   if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool may_strike =
-      body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] == "rigid";
+      body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] != "planar";
+  const bool solid = change["reason"] == in_words(LevelReason::solid);
   const ordered_json slid = body.value("peak_slide_m", ordered_json());
   // of a block soft contacts are in it, up to a landing, but not those that stand for a hard floor
   const char* const until = change["model"] == "planar" ? " until it lands" : " until it lifts";
   const std::string bounds =
       may_strike
-          ? fmt::format("{}; leaning and striking something, from which a frame springs back, enlarge that",
-                        until)
+          ? fmt::format(
+                "{}; leaning and striking something, from which a frame springs back otherwise, enlarge that",
+                until)
       : body["impacts"].get<int>() > 0 ? fmt::format("{}; leaning and landing enlarge that", until)
       : !body["first_beyond_critical_s"].is_null() ? fmt::format("{}; leaning enlarges that", until)
-      : slid.is_number() && slid > k_slides ? " until it slides; legs that bend back as it slips enlarge that"
-                                            : "";
+      : slid.is_number() && slid > k_slides && !solid
+          ? " until it slides; legs that bend back as it slips enlarge that"
+          : "";
   const double error = estimate.get<double>();
   const std::string off =
       error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error);
+  if (solid) return fmt::format("; off for how its contacts give by {}{}", off, bounds);
   const bool on_hard_floor = change["model"] == "planar" && s["contact"]["stands_for_hard_floor"] == true;
   const char* const but = change["model"] == "elastic" ? "but for friction at its feet "
                           : on_hard_floor              ? "but for how contacts give "

@@ -54,7 +54,7 @@ std::vector<std::string> accuracy_in_words(const Model& model, const AccuracyRes
   for (std::size_t b = 0; b < result.errors.size(); ++b) {
     const study::BodyError& error = result.errors[b];
     const std::string& name = model.bodies[b].name;
-    if (!error.same_verdict())
+    if (!error.same_course())
       lines.push_back(say(k_unsure, name));
     else if (error.overturned)
       lines.push_back(say(k_sure_fall, name, error.overturn_time.value_or(0),

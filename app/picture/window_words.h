@@ -60,7 +60,7 @@ inline constexpr Phrase k_bracket{"bracket", "L型金具"};
 inline constexpr Phrase k_pole{"pole", "突っ張り棒"};
 inline constexpr Phrase k_away{"taken away", "取り外し"};
 inline constexpr Phrase k_holds{"holding", "有効"};
-inline constexpr Phrase k_slack{"not pulled", "無負荷"};
+inline constexpr Phrase k_slack{"without force", "無負荷"};
 inline constexpr Phrase k_broken_anchor{"broken", "破断"};
 inline constexpr Phrase k_pulls{"pulls {0:.0f} N", "引張 {0:.0f} N"};
 inline constexpr Phrase k_holds_with{"holds with {0:.0f} N", "保持 {0:.0f} N"};

@@ -102,7 +102,7 @@ std::string probability(ReportPage& page) {
 std::string disagreements(const ReportPage& page, const ordered_json& estimate) {
   std::string out;
   for (const ordered_json& e : estimate["bodies"]) {
-    if (e["same_verdict"].get<bool>()) continue;
+    if (e["same_course"].get<bool>()) continue;
     const std::string name = e["name"].get<std::string>();
     const auto body =
         std::ranges::find_if(page.bodies(), [&](const ordered_json& b) { return b["name"] == name; });

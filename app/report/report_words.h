@@ -48,7 +48,7 @@ inline constexpr Phrase k_ways_stay{"Every place keeps a way out; the narrowest 
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};
 inline constexpr Phrase k_replay_page{"Page that replays this run", "この計算結果を再生するページ"};
-inline constexpr Phrase k_others_stay{"{0} of {1} bodies stay standing.", "{1}体のうち{0}体は転倒しない。"};
+inline constexpr Phrase k_others_stay{"Not overturned: {0} of {1} bodies.", "{1}体のうち{0}体は転倒しない。"};
 inline constexpr Phrase k_sensitive{
     "The outcome turns on small differences in the shaking: read the probabilities in section {0}, not the "
     "single run.",

@@ -46,7 +46,7 @@ Shell::~Shell() {
 
 std::vector<LiveStatus> Shell::close(const std::string& status) {
   keep_room();
-  std::vector<LiveStatus> all;
+  std::vector<LiveStatus> all = std::move(ended_);
   if (session_) {
     std::unique_ptr<LiveRun> run = Session::leave(std::move(session_));
     const LiveStatus last = run->close(status);
@@ -175,8 +175,9 @@ bool Shell::update(double wall_s) {
   if (session_) session_->viewer().show_work(exports_.in_words());
   std::erase_if(closing_, [&](std::future<LiveStatus>& one) {
     if (one.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    if (const LiveStatus status = one.get(); !status.record_failure.empty())
-      message_ = {say(ww::k_record_broke_off), status.record_failure, ""};
+    ended_.push_back(one.get());
+    if (const std::string& failure = ended_.back().record_failure; !failure.empty())
+      message_ = {say(ww::k_record_broke_off), failure, ""};
     return true;
   });
   bool seen = session_ && session_->viewer().update(wall_s);

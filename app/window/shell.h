@@ -120,6 +120,7 @@ class Shell {
   std::optional<io::Scene> to_save_;   ///< room_ as it is saved
   std::string kept_room_;              ///< its text when it was written last
   std::vector<std::future<LiveStatus>> closing_;
+  std::vector<LiveStatus> ended_;              ///< of those that have closed
   std::string shown_failure_, shown_trouble_;  ///< for which a message was shown
   struct WantedDemo {
     std::size_t which;  ///< of demos()

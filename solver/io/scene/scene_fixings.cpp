@@ -159,7 +159,8 @@ class Fixing {
         found->body = b;
       }
     if (!found)
-      entry_.fail("to", "there is no wall, body, floor or ceiling \"" + name + "\"; known: " + known);
+      entry_.fail("to", "there is no wall, body, floor or ceiling \"" + name + "\"; known: " + known +
+                            (name == "ceiling" ? "; [ceiling] at = HEIGHT makes one" : ""));
     const bool goes = (found->wall && kind_.to_wall) || (found->floor && kind_.to_floor) ||
                       (found->ceiling && kind_.to_ceiling) || (found->body >= 0 && kind_.to_body);
     if (!goes)

@@ -22,6 +22,7 @@ std::optional<io::Scene> without_anchors(const io::Scene& scene) {
                 [](const io::Item& item) { return std::ranges::find(k_keys, item.key) != std::end(k_keys); });
   io::Scene rest = io::parse_scene(io::write_toml(root), scene.name, {}, io::kept_files(scene));
   rest.name = scene.name;
+  rest.setup.parameters.contact = scene.setup.parameters.contact;  // defaults follow what leans on what
   return rest;
 }
 

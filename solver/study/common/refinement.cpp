@@ -75,7 +75,7 @@ std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outc
     e.impacts_refined = impacts_of(fine);
     e.overturn_time = coarse.beyond_since;
     e.overturn_refined = fine.beyond_since;
-    if (e.same_verdict()) {
+    if (e.same_course()) {
       if (e.overturned)
         e.overturn_error =
             overturn_error(*coarse.beyond_since, *fine.beyond_since,

@@ -39,7 +39,7 @@ bool is_by_tolerance(const Parameters& parameters);
 
 /// Stated errors of one body: k_error_of_difference times the difference; more of the time of a fall which
 /// comes later at finer steps, as what nearly balances takes ever longer. Absent: the quantity does not exist
-/// in one of the runs, or the two part in the verdict, or in how often it met the floor before it fell: then
+/// in one of the runs, or the two are not on the same course: then
 /// small differences decide. Of what fell the stress is that of its landing, whose error follows no order.
 struct BodyError {
   bool overturned = false, overturned_refined = false;
@@ -51,8 +51,13 @@ struct BodyError {
   std::optional<double> peak_slide_error;   ///< m
   std::optional<double> peak_stress_error;  ///< Pa
 
-  bool same_verdict() const {
-    return overturned == overturned_refined && (!overturned || impacts == impacts_refined);
+  bool same_verdict() const { return overturned == overturned_refined; }
+  /// Whether errors can be stated: of what falls nearly at the same time, or after as many impacts. Light
+  /// bodies chatter, and meet the floor three times instead of once within milliseconds.
+  bool same_course() const {
+    constexpr double k_chatter = 0.02;  // s
+    return same_verdict() && (!overturned || impacts == impacts_refined ||
+                              std::abs(*overturn_time - *overturn_refined) < k_chatter);
   }
   /// What stands meets the floor so much more or less often that it is on another course, of which its errors
   /// tell little.

@@ -134,8 +134,8 @@ void drop_falling(FragilityCurve& curve) {
     if (most && share(level).high < share(*most).low) {
       curve.fit.fit.reset();
       curve.fit.why_not =
-          fmt::format("it does not become more frequent: {} of {} runs at {:.4g}, {} of {} at {:.4g}",
-                      most->hits, most->runs, most->intensity, level.hits, level.runs, level.intensity);
+          fmt::format("it becomes rarer again: {} of {} runs at {:.4g}, {} of {} at {:.4g}", most->hits,
+                      most->runs, most->intensity, level.hits, level.runs, level.intensity);
     } else if (!most || share(level).low > share(*most).low) {
       most = &level;
     }

@@ -160,8 +160,7 @@ TEST(FragilityStudy, shares_that_fall_have_no_curve) {
   }
   const FragilityCurve overturns = gather(plan, rows).curves[0][2];
   EXPECT_FALSE(overturns.fit.fit);
-  EXPECT_TRUE(overturns.fit.why_not.starts_with("it does not become more frequent: "))
-      << overturns.fit.why_not;
+  EXPECT_TRUE(overturns.fit.why_not.starts_with("it becomes rarer again: ")) << overturns.fit.why_not;
 }
 
 /// That of the first quantity, with `hits` of `runs` at each level.

@@ -38,7 +38,7 @@ void expect_stated(const io::Scene& scene, double finer) {
   for (std::size_t b = 0; b < stated.size(); ++b) {
     const BodyOutcome &found = run.bodies()[b], &exactly = truth.bodies()[b];
     SCOPED_TRACE(scene.name + ", " + setup.model.bodies[b].name);
-    ASSERT_TRUE(stated[b].same_verdict());
+    ASSERT_TRUE(stated[b].same_course());
     EXPECT_EQ(found.beyond_since.has_value(), exactly.beyond_since.has_value());
     if (found.beyond_since) {
       EXPECT_LE(std::abs(*found.beyond_since - *exactly.beyond_since), k_slack * *stated[b].overturn_error);
@@ -115,7 +115,7 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_the_stress_of_adaptive_s
 TEST(Refinement, what_stands_on_one_course_of_many_is_seen) {
   const topple::Setup setup = io::load_scene("desk", {"shake.1.amplitude=460 gal"}).setup;
   const BodyError stated = errors(setup, outcome(setup), outcome(compared(setup)))[0];
-  EXPECT_TRUE(stated.same_verdict() && stated.parted());
+  EXPECT_TRUE(stated.same_course() && stated.parted());
   EXPECT_TRUE(stated.peak_slide_error);
 }
 
@@ -142,7 +142,7 @@ TEST(Refinement, another_number_of_impacts_before_the_fall_leaves_the_verdict_op
   const std::vector<BodyError> stated = errors(setup, outcome(setup), outcome(compared(setup)));
   EXPECT_TRUE(stated[0].overturned && stated[0].overturned_refined);
   EXPECT_NE(stated[0].impacts, stated[0].impacts_refined);
-  EXPECT_FALSE(stated[0].same_verdict() || stated[0].overturn_error);
+  EXPECT_FALSE(stated[0].same_course() || stated[0].overturn_error);
 }
 
 // A pulse a little above the least that overturns: the time of the fall goes with the logarithm of what is

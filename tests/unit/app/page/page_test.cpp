@@ -239,7 +239,7 @@ TEST(Verdict, says_who_falls_first_and_who_stays) {
   EXPECT_EQ(
       verdict_in_words(bodies, Language::english),
       "“b” overturns 1.50 s after the start of the run. “a” overturns 3.20 s after the start of the run. "
-      "1 of 3 bodies stay standing.");
+      "Not overturned: 1 of 3 bodies.");
   EXPECT_EQ(verdict_in_words({{"c", {}, 2, 10.}}, Language::english),
             "Nothing overturns. “c” comes nearest to it: it tilts by 2.00° of the 10.00° at which it would.");
   EXPECT_EQ(verdict_in_words({{"c", {}, 5, 20.}, {"d", {}, 4, 10.}, {"e", {}, 9, {}}}, Language::english),

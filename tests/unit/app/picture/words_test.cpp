@@ -149,7 +149,7 @@ TEST(Words, a_bracket_without_force_holds_and_a_strap_is_slack) {
   const topple::Run run(scene.setup);
   io::FrameRow row = io::frame_row(run);
   row.anchor[1] = {.tension = 0, .energy = 0, .natural_length = 0.4f, .state = io::k_anchor_slack};
-  EXPECT_EQ(anchor_in_words(model, row, 1), "strap strong: not pulled");
+  EXPECT_EQ(anchor_in_words(model, row, 1), "strap strong: without force");
   model.anchors[1].type = Anchor::Type::bracket;
   EXPECT_EQ(anchor_in_words(model, row, 1), "bracket strong: holding");
   row.anchor[1].tension = -12;

@@ -229,7 +229,7 @@ TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
 TEST_F(ReportPageTest, an_open_verdict_is_said_at_the_top_and_has_no_number) {
   Json& e = report_.summary["error_estimate"];
   e["disagreements"] = {"free does not overturn, but at 0.2 s when refined"};
-  e["bodies"][0] = {{"name", "free"},           {"same_verdict", false},   {"overturn_time_s", nullptr},
+  e["bodies"][0] = {{"name", "free"},           {"same_course", false},    {"overturn_time_s", nullptr},
                     {"peak_tilt_deg", nullptr}, {"peak_slide_m", nullptr}, {"peak_stress_Pa", nullptr}};
   const std::string html = page();
   EXPECT_TRUE(holds(html, "A finer computation takes another course (section 3)"));
