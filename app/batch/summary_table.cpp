@@ -53,8 +53,9 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
     for (const ordered_json& body : e["bodies"])
       if (!body[key].is_null()) error = std::max(error, body[key].get<double>());
     if (error < 0) return std::string();
-    return fmt::format("{} {}{:.2g} {}, ", name, error > (1 + 1e-9) * least ? "" : "less than ",
-                       scale * error, unit);
+    const double shown = scale * error;
+    return fmt::format("{} {}{} {}, ", name, error > (1 + 1e-9) * least ? "" : "less than ",
+                       shown < 100 ? fmt::format("{:.2g}", shown) : fmt::format("{:.0f}", shown), unit);
   };
   std::string words = part("overturning", "overturn_time_s", 1, "s", study::k_least_time_error) +
                       part("peak tilt", "peak_tilt_deg", 1, "deg", study::k_least_tilt_error * k_degrees) +
@@ -175,9 +176,12 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
   if (!fell.is_null() && fell.get<double>() <= change["from_s"].get<double>()) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
   if (estimate == 0) return "";  // a block, or nothing pushed it
+  const ordered_json pinched = body.value("peak_pinch_ratio", ordered_json());
+  const bool struck = pinched.is_number() && pinched > 0;
   const bool may_strike =
-      body["not_planar"] == planar::traits(planar::Obstacle::near).phrase && change["model"] != "planar";
-  const bool solid = change["reason"] == in_words(LevelReason::solid);
+      (change["model"] == "elastic" && struck) ||
+      (change["model"] == "rigid" && body["not_planar"] == planar::traits(planar::Obstacle::near).phrase);
+  const bool solid = change["reason"] == name(LevelReason::solid);
   const ordered_json slid = body.value("peak_slide_m", ordered_json());
   // of a block soft contacts are in it, up to a landing, but not those that stand for a hard floor
   const char* const until = change["model"] == "planar" ? " until it lands" : " until it lifts";

@@ -43,10 +43,9 @@ inline constexpr Phrase k_few_elements{
 inline constexpr Phrase k_beyond_yield{
     "the stress in body \"{}\", {:.4g} MPa, is beyond yield while the body was elastic, a section bore "
     "{:.3g} of "
-    "its strength: no steel does; model = \"frame\", or \"auto\" where stresses are wanted, lets it yield",
-    "「{}」は弾性体のまま {:.4g} MPa となり降伏を超えた（断面は耐力の {:.3g} 倍。model = \"frame\" "
-    "か、応力を求める"
-    "場合の \"auto\" なら降伏する）"};
+    "its strength: no steel does; model = \"frame\" lets it yield",
+    "「{}」は弾性体のまま {:.4g} MPa となり降伏を超えた（断面は耐力の {:.3g} 倍。model = \"frame\" なら"
+    "降伏する）"};
 inline constexpr Phrase k_beyond_strength{
     "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
     "hinges",
@@ -87,7 +86,8 @@ inline constexpr Phrase k_law{
     "\"coulomb\" and \"paper\" do neither",
     "接触則 \"{}\" は離れるときに引き止め、静止中に沈むため、判定に意味がない（\"coulomb\" と \"paper\" "
     "にはない）"};
-inline constexpr Phrase k_try_tolerance{"try a smaller tolerance", "許容誤差を小さくするとよい"},
+inline constexpr Phrase k_try_tolerance{"try a smaller tolerance or a fixed time_step",
+                                        "許容誤差を小さくするか、時間刻みを固定するとよい"},
     k_try_step{"try a smaller time_step", "時間刻みを小さくするとよい"},
     k_try_alpha_method{"gamma above 1/2 damps rigid motion too, generalized-alpha does not",
                        "1/2 を超える γ は剛体運動も減衰させる。一般化α法ならしない"};

@@ -184,6 +184,7 @@ void Player::update_parameters() {
   const std::int32_t branch = head ? status_.branch : here.branch;
   parameters_ = parameters_at(scene_->setup, history_, branch, here.step);
   parameters_so_far_ = parameters_before(scene_->setup, history_, branch, here.step);
+  changed_so_far_ = changed_before(scene_->setup, history_, branch, here.step);
   if (head)
     for (const Edit& edit : posted_) apply(edit, scene_->setup.model, here.time, parameters_);
 }

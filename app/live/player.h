@@ -86,6 +86,7 @@ class Player {
   const Parameters& parameters() const { return parameters_; }
   /// With which the frame shown came about.
   const Parameters& parameters_so_far() const { return parameters_so_far_; }
+  bool changed_so_far() const { return changed_so_far_; }  ///< changed_before()
 
   // What is seen.
   const io::Scene& scene() const { return *scene_; }
@@ -151,6 +152,7 @@ class Player {
   std::vector<RowPtr> way_, ghost_way_;
   RunExtent extent_;
   Parameters parameters_, parameters_so_far_;
+  bool changed_so_far_ = false;
   std::vector<Edit> posted_;  // not yet applied by the run
   std::vector<Undo> undo_, redo_;
   bool playing_ = false, loop_ = false, following_ = true;

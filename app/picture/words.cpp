@@ -153,12 +153,12 @@ std::string when_in_words(const Shake& shake, double t) {
 
 }  // namespace
 
-std::string title_in_words(const io::Scene& scene, const Parameters& parameters) {
+std::string title_in_words(const io::Scene& scene, const Parameters& parameters, bool changed) {
   const Model& model = scene.setup.model;
-  const bool changed = ranges::any_of(editable(model, parameters), [&](const auto& edited) {
-    const auto& [key, index] = edited;
-    return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
-  });
+  changed = changed || ranges::any_of(editable(model, parameters), [&](const auto& edited) {
+              const auto& [key, index] = edited;
+              return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
+            });
   return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, scene.title)
                                                                 : scene.title;
 }

@@ -10,8 +10,9 @@
 
 namespace topple::app {
 
-/// The scene's title; with `parameters` that were changed since, "A cabinet under 190 gal (changed)".
-std::string title_in_words(const io::Scene& scene, const Parameters& parameters);
+/// The scene's title; with `parameters` that were changed since, or of a run that was `changed` on its way,
+/// "A cabinet under 190 gal (changed)".
+std::string title_in_words(const io::Scene& scene, const Parameters& parameters, bool changed = false);
 
 /// "free: leans 4.2° of 10.9°". gravity: m/s^2.
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body);

@@ -54,7 +54,8 @@ void Viewer::draw_words(const io::FrameRow& row) {
       height += std::round(1.3f * font->FontSize);
     }
   };
-  if (!low) add(fonts_.text, title_in_words(player_.scene(), player_.parameters_so_far()));
+  if (!low)
+    add(fonts_.text, title_in_words(player_.scene(), player_.parameters_so_far(), player_.changed_so_far()));
   add(fonts_.small, instant_in_words(player_.scene().setup, row) + "   " +
                         shake_in_words(player_.parameters_so_far(), row.time));
   const Model& model = player_.scene().setup.model;
@@ -68,7 +69,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
     add(fonts_.small, say(k_all_rigid));
   if (shows_earlier())
     add(fonts_.small, say(furnish_words::k_ghost_before));
-  else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_)
+  else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_ && !frame_.ghost_tubes.empty())
     add(fonts_.small, say(k_ghost_is, *ghost));
   float x = scene_.left + margin, y = scene_.top + margin;
   const float more = k_words_to_come * fonts_.small->FontSize;

@@ -42,6 +42,19 @@ Parameters parameters_before(const Setup& setup, const History& history, std::in
   return parameters_at(setup, history, branch, std::max<std::int64_t>(step - 1, 0));
 }
 
+bool changed_before(const Setup& setup, const History& history, std::int32_t branch, std::int64_t step) {
+  const auto keys = editable(setup.model, setup.parameters);
+  Parameters now = setup.parameters;
+  const std::vector<LoggedEdit> edits = history.edits_on_way_to(branch);
+  for (std::size_t k = 0; k < edits.size() && edits[k].step < step; ++k) {
+    apply(edits[k].edit, setup.model, edits[k].time, now);
+    if (k + 1 < edits.size() && edits[k + 1].step == edits[k].step) continue;
+    for (const auto& [key, index] : keys)
+      if (edited_value(now, key, index) != edited_value(setup.parameters, key, index)) return true;
+  }
+  return false;
+}
+
 bool repeat(Run& run, const History& history, std::int32_t branch, std::int64_t step) {
   const std::vector<LoggedEdit> edits = history.edits_on_way_to(branch);
   auto next =

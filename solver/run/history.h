@@ -48,6 +48,9 @@ Parameters parameters_at(const Setup& setup, const History& history, std::int32_
 Parameters parameters_before(const Setup& setup, const History& history, std::int32_t branch,
                              std::int64_t step);
 
+/// Whether `branch` took a step up to `step` with other parameters than the setup's.
+bool changed_before(const Setup& setup, const History& history, std::int32_t branch, std::int64_t step);
+
 /// Steps `run`, which stands on the way to `branch` with the parameters of its place, to `step` and applies
 /// the edits met. False when a step failed and left the state where it was.
 bool repeat(Run& run, const History& history, std::int32_t branch, std::int64_t step);

@@ -18,7 +18,12 @@ constexpr double k_explicit_share = 0.9;
 // and is as good as any where nothing moves yet that its error could be measured by. Not looked for above
 // k_short_step.
 constexpr double k_resolved_share = 0.01;
-constexpr double k_short_step = 1e-6;   // s
+constexpr double k_short_step = 1e-6;  // s
+// A jump of the energy, as where a contact passes from one part of a member to another, is the same in steps
+// of any size: a short one that errs as one a fifth longer did takes it, up to this many times what the
+// tolerance allows.
+constexpr double k_jump = 10;
+constexpr double k_same_error = 0.98;
 constexpr double k_unexplained = 1e-6;  // J, that it may leave
 
 // The size to try next after one of size h with this error and these iterations.
@@ -57,6 +62,7 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
   h = fit(h, left);
   StepStatus status;
   int iterations = 0, rejected = 0;
+  double longer_errs = 0;  // of the step tried before
   for (;;) {
     status = try_step(h);
     iterations += status.newton_iterations;
@@ -66,7 +72,10 @@ StepStatus adaptive_step(const Model& model, const Parameters& parameters, const
     // explicit substeps follow the motion: they are as short as they must be, whatever h
     const double reach = by_limit ? 0 : w.parts.explicit_reach(parameters);
     const double counts = h <= reach ? error.energy : error.greatest();
-    const bool resolved = status.ok() && counts > 1 && is_resolved(h);
+    const bool jumps =
+        h <= k_short_step && counts <= k_jump && counts > k_same_error * longer_errs && longer_errs > 1;
+    const bool resolved = status.ok() && counts > 1 && (jumps || is_resolved(h));
+    longer_errs = status.ok() ? counts : 0;
     if (status.ok() && (counts <= 1 || resolved)) {
       if (h == left) w.next.time = state.time + left;
       // as far as the energy of explicit substeps adds up; without frames there is none

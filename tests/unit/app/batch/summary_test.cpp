@@ -237,7 +237,7 @@ TEST_F(SummaryTest, an_error_of_time_integration_that_is_the_least_one_is_an_upp
   EXPECT_NE(summary_table(s).find("peak tilt less than 0.00057 deg, slide less than 0.1 mm"),
             std::string::npos)
       << summary_table(s);
-  s["error_estimate"]["peak_tilt_deg"] = 0.0006;
+  s["error_estimate"]["bodies"][0]["peak_tilt_deg"] = 0.0006;
   EXPECT_NE(summary_table(s).find("peak tilt 0.0006 deg, "), std::string::npos);
 }
 

@@ -72,6 +72,19 @@ TEST(History, edits_on_the_way_are_those_up_to_and_at_each_fork) {
   EXPECT_EQ(alpha(3, 1000), 10);
 }
 
+TEST(History, a_run_stays_changed_when_a_parameter_is_as_it_was_again) {
+  const topple::Setup setup = shaken(1);
+  const double own = setup.parameters.contact.alpha;
+  History history{.branches = {{0, -1, 0}}};
+  const auto add = [&](std::int64_t step, double value) {
+    history.edits.push_back({0, step, 1e-3 * static_cast<double>(step), set(Edit::Key::alpha, value)});
+  };
+  add(5, 2 * own), add(5, own);  // no step was taken between them
+  add(10, 3 * own), add(20, own);
+  for (const auto& [step, changed] : {std::pair(0, false), {6, false}, {10, false}, {11, true}, {50, true}})
+    EXPECT_EQ(changed_before(setup, history, 0, step), changed) << step;
+}
+
 TEST(History, branches_without_a_way_from_the_root_are_refused) {
   EXPECT_THROW(History{}.way_to(0), std::invalid_argument);
   EXPECT_THROW(forked().way_to(5), std::invalid_argument);
