@@ -25,7 +25,8 @@ nlohmann::ordered_json error_estimate(const Setup& setup, const Outcome& run, co
 /// The same when the finer run failed.
 nlohmann::ordered_json failed_estimate(const Setup& setup, const std::string& message);
 
-/// "step halved" or "tolerance divided by 100": what the finer run of `setup` has.
+/// "step and its parts halved" or "tolerance divided by 100, parts of a step by 4": what the finer run of
+/// `setup` has.
 std::string refinement_in_words(const Setup& setup);
 
 /// Name, body, type and strength of an anchor; where its ends are; of a [[fixing]] its kind too.
