@@ -117,9 +117,14 @@ std::string address_of(const std::string& file) {
   return out;
 }
 
-bool verdict_is_open(const ReportPage& page) {
+/// Bodies of which a finer run takes another course.
+std::string open_ones(const ReportPage& page) {
   const ordered_json& e = page.report().summary["error_estimate"];
-  return e.contains("disagreements") && !e["disagreements"].empty();
+  if (!e.contains("bodies")) return "";
+  std::string out;
+  for (const ordered_json& body : e["bodies"])
+    if (!body["same_course"].get<bool>()) out += (out.empty() ? "" : ", ") + body["name"].get<std::string>();
+  return out;
 }
 
 /// Who is hit, and whose way out is closed or the narrowest.
@@ -161,7 +166,8 @@ std::string result(const ReportPage& page) {
       broken += (broken.empty() ? "" : ", ") + page.text(words::k_one_breaks, a["name"].get<std::string>(),
                                                          shown(a["break_time_s"].get<double>(), 2));
   if (!broken.empty()) out += page.paragraph(page.say(words::k_holding_breaks, broken), "notice");
-  if (verdict_is_open(page)) out += page.paragraph(page.say(words::k_open, page.certain_section()), "notice");
+  if (const std::string open = open_ones(page); !open.empty())
+    out += page.paragraph(page.say(words::k_open, page.certain_section(), open), "notice");
   if (sensitive(page)) out += page.paragraph(page.say(words::k_sensitive, page.certain_section()), "notice");
   out += "<div class=\"figures\">\n";
   if (!page.bodies().empty())

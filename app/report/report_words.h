@@ -55,8 +55,8 @@ inline constexpr Phrase k_sensitive{
     "この結果は揺れのわずかな違いで変わる。1回の計算結果ではなく、第{0}節の確率で判断すること。"};
 inline constexpr Phrase k_open{
     "A finer computation takes another course (section {0}): this one run does not settle when, or whether, "
-    "it falls.",
-    "計算の刻みを細かくすると経過が変わる（第{0}節）。1回の計算結果だけでは判断できない。"};
+    "“{1}” falls.",
+    "計算の刻みを細かくすると経過が変わる（第{0}節）。「{1}」については1回の計算結果だけでは判断できない。"};
 inline constexpr Phrase k_not_validated{
     "Not validated against experiment. The program is checked against theory and published numbers "
     "(topple verify); no shaking-table test stands behind this page.",

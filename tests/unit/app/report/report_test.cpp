@@ -233,6 +233,7 @@ TEST_F(ReportPageTest, an_open_verdict_is_said_at_the_top_and_has_no_number) {
                     {"peak_tilt_deg", nullptr}, {"peak_slide_m", nullptr}, {"peak_stress_Pa", nullptr}};
   const std::string html = page();
   EXPECT_TRUE(holds(html, "A finer computation takes another course (section 3)"));
+  EXPECT_TRUE(holds(html, "when, or whether, “free” falls."));
   EXPECT_TRUE(holds(html, "“free” stays standing, but overturns in the finer run"));
   EXPECT_FALSE(holds(html, " ± 0"));
 }
