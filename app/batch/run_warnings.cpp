@@ -16,6 +16,7 @@
 #include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
 #include "solver/model/excitation.h"
+#include "solver/study/common/refinement.h"
 #include "solver/study/stability/stability_limits.h"
 
 namespace topple::app {
@@ -187,8 +188,7 @@ void warn_of_law(const Run& run, Warnings& list) {
 
 void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
-  const bool by_tolerance = run.parameters().adaptive && !traits(run.parameters().integrator).is_explicit;
-  const Phrase& finer = by_tolerance ? ww::k_try_tolerance : ww::k_try_step;
+  const Phrase& finer = study::is_by_tolerance(run.parameters()) ? ww::k_try_tolerance : ww::k_try_step;
   double weight = 0;
   for (const Body& body : run.setup().model.bodies) weight += body.mass * run.parameters().gravity.norm();
   if (const double balance = e.balance_error();

@@ -313,9 +313,10 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
                parted = ordered_json::array();
   for (std::size_t b = 0; b < errors.size(); ++b) {
     const study::BodyError& e = errors[b];
-    ordered_json body{{"name", setup.model.bodies[b].name},    {"same_verdict", e.same_verdict()},
-                      {"same_course", e.same_course()},        {"falls", e.overturned},
-                      {"falls_refined", e.overturned_refined}, {"impacts_refined", e.impacts_refined}};
+    ordered_json body{{"name", setup.model.bodies[b].name},
+                      {"same_verdict", e.same_verdict()},
+                      {"same_course", e.same_course()},
+                      {"falls_refined", e.overturned_refined}};
     for (const Quantity& q : k_quantities) {
       const std::optional<double>& error = e.*q.error;
       body[q.key] = error ? number(*error / q.unit) : ordered_json(nullptr);

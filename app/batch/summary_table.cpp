@@ -42,8 +42,8 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
     std::string words;
     for (const auto& line : e["disagreements"])
       words += (words.empty() ? "" : "; ") + line.get<std::string>();
-    const bool open = std::ranges::any_of(
-        e["bodies"], [](const ordered_json& body) { return body["falls"] != body["falls_refined"]; });
+    const bool open =
+        std::ranges::any_of(e["bodies"], [](const ordered_json& body) { return !body["same_verdict"]; });
     parts = (open ? "the verdict itself is open: " : "the two runs part: ") + words;
     if (e["disagreements"].size() == e["bodies"].size()) return begin + parts + "\n";
     parts += "; of the others ";
@@ -168,7 +168,24 @@ std::string integrators(const ordered_json& s) {
   return fmt::format("{}", fmt::join(all, ", "));
 }
 
-constexpr double k_slides = 1e-3;  // m, above creep on its contacts
+/// What the estimate leaves out: it is of a body that stands.
+std::string what_enlarges(const ordered_json& body, const ordered_json& change, bool solid) {
+  constexpr double k_slides = 1e-3;  // m, above creep on its contacts
+  const bool near = body["not_planar"] == planar::traits(planar::Obstacle::near).phrase;
+  const ordered_json pinch = body.value("peak_pinch_ratio", ordered_json()),
+                     slide = body.value("peak_slide_m", ordered_json());
+  // of a block soft contacts are in it, up to a landing, but not those that stand for a hard floor
+  const std::string until = change["model"] == "planar" ? " until it lands" : " until it lifts";
+  if (change["model"] == "rigid" && near)
+    return until + "; leaning and striking something, from which a frame springs back, enlarge that";
+  if (change["model"] == "elastic" && pinch.is_number() && pinch > 0)
+    return until + "; leaning and knocks against other bodies enlarge that";
+  if (body["impacts"].get<int>() > 0) return until + "; leaning and landing enlarge that";
+  if (!body["first_beyond_critical_s"].is_null()) return until + "; leaning enlarges that";
+  if (!solid && slide.is_number() && slide > k_slides)
+    return " until it slides; legs that bend back as it slips enlarge that";
+  return "";
+}
 
 std::string allowed_error(const ordered_json& s, const ordered_json& body, const ordered_json& change) {
   const ordered_json &estimate = change["error_estimate"], &fell = body["overturn_time_s"];
@@ -176,34 +193,17 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
   if (!fell.is_null() && fell.get<double>() <= change["from_s"].get<double>()) return "";
   if (estimate.is_null()) return "; error unknown since it landed on parts that give way more than contacts";
   if (estimate == 0) return "";  // a block, or nothing pushed it
-  const ordered_json pinched = body.value("peak_pinch_ratio", ordered_json());
-  const bool struck = pinched.is_number() && pinched > 0;
-  const bool may_strike =
-      (change["model"] == "elastic" && struck) ||
-      (change["model"] == "rigid" && body["not_planar"] == planar::traits(planar::Obstacle::near).phrase);
   const bool solid = change["reason"] == name(LevelReason::solid);
-  const ordered_json slid = body.value("peak_slide_m", ordered_json());
-  // of a block soft contacts are in it, up to a landing, but not those that stand for a hard floor
-  const char* const until = change["model"] == "planar" ? " until it lands" : " until it lifts";
-  const std::string bounds =
-      may_strike
-          ? fmt::format(
-                "{}; leaning and striking something, from which a frame springs back otherwise, enlarge that",
-                until)
-      : body["impacts"].get<int>() > 0 ? fmt::format("{}; leaning and landing enlarge that", until)
-      : !body["first_beyond_critical_s"].is_null() ? fmt::format("{}; leaning enlarges that", until)
-      : slid.is_number() && slid > k_slides && !solid
-          ? " until it slides; legs that bend back as it slips enlarge that"
-          : "";
   const double error = estimate.get<double>();
   const std::string off =
-      error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error);
-  if (solid) return fmt::format("; off for how its contacts give by {}{}", off, bounds);
+      (error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error)) +
+      what_enlarges(body, change, solid);
+  if (solid) return "; its contacts give, which puts it off by " + off;
   const bool on_hard_floor = change["model"] == "planar" && s["contact"]["stands_for_hard_floor"] == true;
   const char* const but = change["model"] == "elastic" ? "but for friction at its feet "
                           : on_hard_floor              ? "but for how contacts give "
                                                        : "";
-  return fmt::format("; {}off from a frame by {}{}", but, off, bounds);
+  return fmt::format("; {}off from a frame by {}", but, off);
 }
 
 // Of the model that a body begins with.

@@ -143,8 +143,8 @@ class Drawing {
     PictureSettings settings = options_.picture;
     if (inspected_ && inspected_->kind == Subject::Kind::member)
       settings.diagram = Diagram{inspected_->index, std::nullopt};
-    render::SceneFrame frame = bridge_.frame(row, replay_.parameters(scene_, row), settings);
-    if (!frame.caption.title.empty()) frame.caption.title = replay_.title(scene_, row);
+    render::SceneFrame frame =
+        bridge_.frame(row, replay_.parameters(scene_, row), settings, replay_.changed(scene_, row));
     if (solid_ && is_finite(row)) solid_->dress(row, frame);
     if (inspected_) highlight(scene_.setup.model, *inspected_, frame);
     if (ghost_ && time <= ghost_->last()) bridge_.add_ghost(ghost_->at(time), row, settings, frame);

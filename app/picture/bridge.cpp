@@ -125,7 +125,7 @@ Bridge::Bridge(const io::Scene& scene, const RunExtent& extent, bool tells_ways)
 }
 
 render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& parameters,
-                                 const PictureSettings& settings) const {
+                                 const PictureSettings& settings, bool changed) const {
   const Model& model = scene_.setup.model;
   render::SceneFrame out;
   out.profiles = profiles_;
@@ -133,7 +133,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
   out.bounds_min = to_float(extent_.low - Vec3::Constant(skin));
   out.bounds_max = to_float(extent_.high + Vec3::Constant(skin));
   if (!is_finite(row)) {
-    out.caption.title = title_in_words(scene_, parameters);
+    out.caption.title = title_in_words(scene_, parameters, changed);
     out.caption.lines.push_back(say(window_words::k_not_finite));
     add_grounds(Vec3::Zero(), out);
     return out;
@@ -169,7 +169,7 @@ render::SceneFrame Bridge::frame(const io::FrameRow& row, const Parameters& para
     add_trails(model, extent_, row, settings.trails == Trails::run || is_static(scene_.setup), out);
   if (settings.diagram) add_diagram(model, drawn, *settings.diagram, out);
   add_grounds(shift, out);
-  add_captions(row, parameters, settings, out);
+  add_captions(row, parameters, settings, changed, out);
   if (!settings.words) {
     out.legend = {};
     out.trace = {};
@@ -400,9 +400,9 @@ void Bridge::add_grounds(const Vec3& shift, render::SceneFrame& out) const {
 }
 
 void Bridge::add_captions(const io::FrameRow& row, const Parameters& parameters,
-                          const PictureSettings& settings, render::SceneFrame& out) const {
+                          const PictureSettings& settings, bool changed, render::SceneFrame& out) const {
   const Setup& setup = scene_.setup;
-  out.caption.title = title_in_words(scene_, parameters);
+  out.caption.title = title_in_words(scene_, parameters, changed);
   out.caption.lines.push_back(instant_in_words(setup, row));
   if (!parameters.shakes.empty()) {
     const Shake& shake = parameters.shakes.front();

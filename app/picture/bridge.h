@@ -27,10 +27,10 @@ class Bridge {
  public:
   /// `tells_ways`: captions tell of people who are hit or have no way out, which takes a millisecond to find.
   Bridge(const io::Scene& scene, const RunExtent& extent, bool tells_ways = true);
-  /// `parameters`: those that held at the row. Of a row that is not finite only the floor and words that say
-  /// so.
+  /// `parameters`: those that held at the row; `changed`: as of title_in_words(). Of a row that is not finite
+  /// only the floor and words that say so.
   render::SceneFrame frame(const io::FrameRow& row, const Parameters& parameters,
-                           const PictureSettings& settings = {}) const;
+                           const PictureSettings& settings = {}, bool changed = false) const;
   /// The bodies of another row as a ghost in `out`, on the floor of the row beside it.
   void add_ghost(const io::FrameRow& row, const io::FrameRow& beside, const PictureSettings& settings,
                  render::SceneFrame& out) const;
@@ -50,7 +50,7 @@ class Bridge {
   render::Legend legend(const io::FrameRow& row, const PictureSettings& settings) const;
   void add_grounds(const Vec3& shift, render::SceneFrame& out) const;
   void add_captions(const io::FrameRow& row, const Parameters& parameters, const PictureSettings& settings,
-                    render::SceneFrame& out) const;
+                    bool changed, render::SceneFrame& out) const;
 
   const io::Scene& scene_;
   const RunExtent& extent_;

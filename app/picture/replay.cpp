@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "app/picture/words.h"
 #include "app/support/interrupt.h"
 
 namespace topple::app {
@@ -12,9 +11,8 @@ Replay::Replay(const io::Recording& recording, std::int32_t branch)
   for (const std::int64_t frame : frames_) times_.push_back(recording.index()[frame].time);
 }
 
-std::string Replay::title(const io::Scene& scene, const io::FrameRow& row) const {
-  return title_in_words(scene, parameters(scene, row),
-                        changed_before(scene.setup, recording_.history(), row.branch, row.step));
+bool Replay::changed(const io::Scene& scene, const io::FrameRow& row) const {
+  return changed_before(scene.setup, recording_.history(), row.branch, row.step);
 }
 
 Parameters Replay::parameters(const io::Scene& scene, const io::FrameRow& row) const {

@@ -20,8 +20,8 @@ class Replay {
   io::FrameRow frame(std::int64_t number) const { return recording_.frame(frames_[number]); }
   /// Those with which a row came about.
   Parameters parameters(const io::Scene& scene, const io::FrameRow& row) const;
-  /// title_in_words() of the run up to there.
-  std::string title(const io::Scene& scene, const io::FrameRow& row) const;
+  /// changed_before() there.
+  bool changed(const io::Scene& scene, const io::FrameRow& row) const;
   /// Between two rows, or the first or last one.
   io::FrameRow at(double time) const;
 

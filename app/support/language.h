@@ -21,11 +21,11 @@ std::string say_in(Language language, const Phrase& phrase, const Of&... of) {
   return fmt::format(fmt::runtime(language == Language::english ? phrase.english : phrase.japanese), of...);
 }
 
-inline std::string_view in(Language language, const Phrase& phrase) {
+inline std::string_view in_language(Language language, const Phrase& phrase) {
   return language == Language::english ? phrase.english : phrase.japanese;
 }
 template <class Of>
-const Of& in(Language, const Of& of) {
+const Of& in_language(Language, const Of& of) {
   return of;
 }
 
@@ -34,14 +34,14 @@ struct Said {
   std::string english, japanese;
   bool operator==(const Said&) const = default;
 };
-inline const std::string& in(Language language, const Said& words) {
+inline const std::string& in_language(Language language, const Said& words) {
   return language == Language::english ? words.english : words.japanese;
 }
 /// A phrase of what is the same in each language, or itself a phrase.
 template <class... Of>
 Said said(const Phrase& phrase, const Of&... of) {
-  return {say_in(Language::english, phrase, in(Language::english, of)...),
-          say_in(Language::japanese, phrase, in(Language::japanese, of)...)};
+  return {say_in(Language::english, phrase, in_language(Language::english, of)...),
+          say_in(Language::japanese, phrase, in_language(Language::japanese, of)...)};
 }
 
 }  // namespace topple::app

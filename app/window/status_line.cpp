@@ -32,7 +32,7 @@ bool is_restarted(const Player& player) {
 std::string joined(const std::vector<Said>& warnings) {
   std::string out;
   for (const Said& warning : warnings)
-    out += (out.empty() ? "" : say(k_semicolon)) + in(window_language(), warning);
+    out += (out.empty() ? "" : say(k_semicolon)) + in_language(window_language(), warning);
   return out;
 }
 

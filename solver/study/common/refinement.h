@@ -31,16 +31,16 @@ inline constexpr double k_least_stress_error = 5e-4;  ///< of the stress
 /// The same run at half the step and a tenth of the tolerance; implicit substeps of rigid bodies follow the
 /// tolerance at fixed steps too. Not for statics.
 Setup refined(const Setup& setup);
-/// With which a run is compared for its error: refined once, or twice where its steps adapt: those of a tenth
-/// of the tolerance are not always so much shorter that they would show it.
+/// The run from which the error of `setup`'s is found: refined once, where steps adapt twice, since those at
+/// a tenth of the tolerance are at times no shorter.
 Setup compared(const Setup& setup);
 /// Whether steps follow the tolerance.
 bool is_by_tolerance(const Parameters& parameters);
 
-/// Stated errors of one body: k_error_of_difference times the difference; more of the time of a fall which
-/// comes later at finer steps, as what nearly balances takes ever longer. Absent: the quantity does not exist
-/// in one of the runs, or the two are not on the same course: then
-/// small differences decide. Of what fell the stress is that of its landing, whose error follows no order.
+/// Stated errors of one body: k_error_of_difference times the difference; of the time of a fall more where it
+/// comes later at finer steps, since what nearly balances takes ever longer. Absent: the quantity does not
+/// exist in one of the runs, or they are on different courses, where small differences decide. Of what fell
+/// the stress is that of its landing, whose error follows no order.
 struct BodyError {
   bool overturned = false, overturned_refined = false;
   int impacts = 0, impacts_refined = 0;     ///< before it overturned, or in all
@@ -52,15 +52,15 @@ struct BodyError {
   std::optional<double> peak_stress_error;  ///< Pa
 
   bool same_verdict() const { return overturned == overturned_refined; }
-  /// Whether errors can be stated: of what falls nearly at the same time, or after as many impacts. Light
-  /// bodies chatter, and meet the floor three times instead of once within milliseconds.
+  /// The same verdict, and a fall after as many impacts or at nearly the same time: a light body that
+  /// chatters meets the floor three times instead of once within milliseconds.
   bool same_course() const {
     constexpr double k_chatter = 0.02;  // s
     return same_verdict() && (!overturned || impacts == impacts_refined ||
                               std::abs(*overturn_time - *overturn_refined) < k_chatter);
   }
-  /// What stands meets the floor so much more or less often that it is on another course, of which its errors
-  /// tell little.
+  /// It stands in both runs, but meets the floor so much more often in one of them that the stated errors of
+  /// its peaks tell little.
   bool parted() const {
     constexpr double k_few = 0.1;
     return !overturned && !overturned_refined &&

@@ -237,6 +237,15 @@ TEST_F(TextLayout, wrapped_lines_fit_and_keep_the_words) {
   EXPECT_EQ(wrapped(*fonts_.text, text, 160, 2).size(), 2u);
 }
 
+TEST_F(TextLayout, numbers_stay_whole_and_with_their_units) {
+  const std::string text = "it lifts at 177.5 gal, 0.25 Hz or more";
+  for (float width = 90; width < 300; width += 3)
+    for (const std::string& line : wrapped(*fonts_.text, text, width, 9)) {
+      EXPECT_EQ(line.find("177.5") != line.npos, line.find(" gal") != line.npos) << width << ": " << line;
+      EXPECT_EQ(line.find("0.25") != line.npos, line.find(" Hz") != line.npos) << width << ": " << line;
+    }
+}
+
 TEST_F(TextLayout, shortened_text_ends_with_an_ellipsis_between_letters) {
   const std::string cut = shortened(*fonts_.text, "ααααααααααααααααααααααααα", 100);
   EXPECT_LE(text_width(*fonts_.text, cut), 100);

@@ -41,5 +41,21 @@ stiffness = "50 kN/m"
   EXPECT_EQ(rest->setup.run.duration, bare.setup.run.duration);
 }
 
+// A stopper leans a piece, of which the default of alpha would follow: without it the run is on the same
+// contacts.
+TEST(Anchors, what_is_left_stands_on_the_contacts_that_it_had) {
+  const io::Scene held = io::parse_scene(
+      "topple = 1\n[floor]\n[[wall]]\nname = \"back\"\nat = [0, 0]\nnormal = [1, 0, 0]\n[[furniture]]\nkind "
+      "= \"shelf-rack\"\nname = \"rack\"\nagainst = \"back\"\n"
+      "[[fixing]]\nkind = \"stopper\"\nname = \"stop\"\nbody = \"rack\"\nto = \"floor\"\n",
+      "held.toml");
+  const io::Scene own = io::parse_scene(held.text, "held.toml", {"fixing.stop.on=false"});
+  const auto rest = without_anchors(held);
+  ASSERT_TRUE(rest);
+  EXPECT_NE(own.setup.parameters.contact.alpha, held.setup.parameters.contact.alpha);
+  EXPECT_EQ(rest->setup.parameters.contact.alpha, held.setup.parameters.contact.alpha);
+  EXPECT_EQ(rest->setup.parameters.contact.member_share, held.setup.parameters.contact.member_share);
+}
+
 }  // namespace
 }  // namespace topple::study

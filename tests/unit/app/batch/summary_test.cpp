@@ -208,6 +208,10 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   body["impacts"] = 78;
   EXPECT_NE(summary_table(s).find("by about 0.04 % until it lifts; leaning and landing enlarge that)\n"),
             std::string::npos);
+  body["peak_pinch_ratio"] = 0.3;
+  EXPECT_NE(summary_table(s).find("until it lifts; leaning and knocks against other bodies enlarge that)\n"),
+            std::string::npos);
+  body["peak_pinch_ratio"] = 0;
   // contacts that stand for a hard floor give, of which the estimate of a block knows nothing
   body["models"][0]["model"] = "planar";
   s["contact"]["stands_for_hard_floor"] = true;

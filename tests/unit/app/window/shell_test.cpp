@@ -31,6 +31,21 @@ TEST_F(ShellTest, typing_filters_the_scenes_and_enter_opens_the_one_selected) {
 }
 
 // "yield" stands in the titles of others that come first in the list.
+TEST_F(ShellTest, what_was_recorded_before_another_scene_is_told_too_when_it_closes) {
+  open_rocking();
+  run_to(0.1);
+  const std::string first = player().status().recording;
+  ASSERT_NE(first, "");
+  shell_->open(write("other.toml", k_rocking));
+  ASSERT_TRUE(until([&] { return ready() && shell_->session()->scene().name.ends_with("other"); }));
+  run_to(0.1);
+  for (int i = 0; i < 20; ++i) frame();
+  const std::vector<LiveStatus> ends = shell_->close("stopped");
+  ASSERT_EQ(ends.size(), 2u);
+  EXPECT_EQ(ends[0].recording, first);
+  EXPECT_NE(ends[1].recording, first);
+}
+
 TEST_F(ShellTest, a_name_that_begins_as_typed_comes_before_titles_that_hold_it) {
   shell_->choose_scene();
   frame();
