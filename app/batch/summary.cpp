@@ -51,12 +51,14 @@ ordered_json intervals(const std::vector<double>& times) {
 ordered_json models(const BodyOutcome& o, const Model& model, const Parameters& parameters) {
   ordered_json out = ordered_json::array();
   for (const LevelChange& change : o.level_changes)
-    out.push_back({{"from_s", number(change.time)},
-                   {"model", traits(change.level).word},
-                   {"reason", name(change.reason)},
-                   {"integrator", integrator_of(change.level, model, parameters)},
-                   {"error_estimate", traits(change.level).moves_nodes ? ordered_json(nullptr)
-                                                                       : number(change.error_estimate)}});
+    out.push_back(
+        {{"from_s", number(change.time)},
+         {"model", traits(change.level).word},
+         {"reason", name(change.reason)},
+         {"integrator", integrator_of(change.level, model, parameters)},
+         {"error_of", traits(change.level).has_modes && parameters.want_stress ? "stress" : "motion"},
+         {"error_estimate",
+          traits(change.level).moves_nodes ? ordered_json(nullptr) : number(change.error_estimate)}});
   return out;
 }
 

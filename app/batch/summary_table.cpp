@@ -16,6 +16,7 @@
 #include "app/batch/ways_summary.h"
 #include "app/support/integrators.h"
 #include "app/support/model_words.h"
+#include "app/support/models_in_brief.h"
 #include "app/support/terms.h"
 #include "solver/body/model_level.h"
 #include "solver/planar/planar_case.h"
@@ -195,9 +196,12 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
   if (estimate == 0) return "";  // a block, or nothing pushed it
   const bool solid = change["reason"] == name(LevelReason::solid);
   const double error = estimate.get<double>();
-  const std::string off =
-      (error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error)) +
-      what_enlarges(body, change, solid);
+  const std::string size =
+      error < k_least_error ? "less than 0.1 %" : fmt::format("about {:.2g} %", 100 * error);
+  if (change["error_of"] == "stress" && error >= 1) return "; what its blows do to its stresses is not known";
+  if (change["error_of"] == "stress")
+    return "; but for friction at its feet its stresses are off from a frame's by " + size;
+  const std::string off = size + what_enlarges(body, change, solid);
   if (solid) return "; its contacts give, which puts it off by " + off;
   const bool on_hard_floor = change["model"] == "planar" && s["contact"]["stands_for_hard_floor"] == true;
   const char* const but = change["model"] == "elastic" ? "but for friction at its feet "
@@ -208,7 +212,7 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
 
 // Of the model that a body begins with.
 std::string not_planar(const ordered_json& body, const ordered_json& model) {
-  const bool first = &model == &body["models"].front();
+  const bool first = model["from_s"] == body["models"].front()["from_s"];
   return !first || body["not_planar"].is_null() ? ""
                                                 : "; not planar: " + body["not_planar"].get<std::string>();
 }
@@ -222,10 +226,13 @@ std::string model_lines(const ordered_json& s) {
   std::vector<Alike> all;
   for (const auto& b : s["bodies"]) {
     std::vector<std::string> models;
-    for (const auto& model : b["models"])
-      models.push_back(fmt::format("{} from {} s ({}{}{})\n", model["model"].get<std::string>(),
-                                   text(model["from_s"], "{:.3f}"), model["reason"].get<std::string>(),
-                                   not_planar(b, model), allowed_error(s, b, model)));
+    for (const ordered_json& model : models_in_brief(b["models"])) {
+      const std::string times = model["times"];
+      models.push_back(
+          fmt::format("{} from {} s{} ({}{}{})\n", model["model"].get<std::string>(),
+                      text(model["from_s"], "{:.3f}"), times.empty() ? "" : ", " + times + " times",
+                      model["reason"].get<std::string>(), not_planar(b, model), allowed_error(s, b, model)));
+    }
     auto group = std::ranges::find(all, models, &Alike::models);
     if (group == all.end()) group = all.insert(all.end(), {std::move(models), {}});
     group->names.push_back(b["name"].get<std::string>());

@@ -251,6 +251,13 @@ void show(const std::shared_ptr<const OverturnFound>& found, MapState& state) {
 
 }  // namespace
 
+std::string no_lines_in_words(Language language, const std::string& why) {
+  for (const Phrase& reason :
+       {k_lines_several, k_lines_building, k_lines_steep, k_lines_moving, k_lines_no_block})
+    if (reason.english == why) return say_in(language, reason);
+  return why;
+}
+
 std::string present_in_words(const OverturnFound& found, const Parameters& now) {
   const Axis &x = found.plan->x, &y = found.plan->y;
   const double at_x = value_now(x, now), at_y = value_now(y, now);
@@ -332,8 +339,7 @@ bool draw_map(Player& player, MapState& state, std::string& refused) {
         (say(k_map_lines, found->map.criteria.bodies) +
          (state.soft_limit ? say(k_full_stop) + " " + say(k_map_soft, *state.soft_limit / k_gal) : "")));
   else if (!found->map.criteria.why_not.empty())  // else they are not there yet
-    text_wrapped(
-        say(plan.scene.setup.parameters.shakes.front().building ? k_building_between : k_map_no_lines));
+    text_wrapped(say(k_map_no_lines, no_lines_in_words(window_language(), found->map.criteria.why_not)));
   text_wrapped(present_in_words(*found, player.parameters()));
   if (!state.bends.empty()) text_wrapped(say(k_map_rigid, state.bends));
   draw_steps(player, *found, refused);

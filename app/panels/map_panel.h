@@ -7,6 +7,7 @@
 
 #include "app/panels/panels.h"
 #include "app/study/present_studies.h"
+#include "app/support/language.h"
 
 namespace topple::app {
 
@@ -26,6 +27,9 @@ struct MapState {
 /// What the map says of the shake as it is now: the cell that it lies in, as that of another shake unless it
 /// is the one that was run.
 std::string present_in_words(const OverturnFound& found, const Parameters& now);
+
+/// Why there are no lines, `why` of study::criteria.
+std::string no_lines_in_words(Language language, const std::string& why);
 
 /// Begins a search where the map follows the parameters, and takes over what is found.
 void update_map(const Player& player, MapState& state);

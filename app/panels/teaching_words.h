@@ -145,12 +145,19 @@ inline constexpr Phrase k_map_lines{"Lines: {0} alone on the floor", "線：床�
 inline constexpr Phrase k_map_soft{
     "They are for a rigid floor; on the soft contacts of this scene a steady push of {0:.4g} gal tips it.",
     "剛な床に対する値です。このシーンの柔らかい接触では {0:.4g} gal の一定の力で倒れます。"};
-inline constexpr Phrase k_map_no_lines{
-    "The criteria do not hold here, so the map has no lines: there are several shakes, or of what stands "
-    "freely "
-    "no edge is square to the shake, or it slides before it can lift, or nothing stands freely.",
-    "判定基準を適用できない（加振が複数、加振に直交する底辺がない、浮き上がる前に滑る、"
-    "または自立する家具がない）ため、線はありません。"};
+inline constexpr Phrase k_map_no_lines{"The criteria do not hold here, so the map has no lines: {0}.",
+                                       "判定基準を適用できないため、線はありません：{0}。"};
+// as study::criteria says why
+inline constexpr Phrase k_lines_several{"there are several shakes", "加振が複数あります"};
+inline constexpr Phrase k_lines_building{"a building stands between the ground and the floor",
+                                         "地盤と床の間に建物があります"};
+inline constexpr Phrase k_lines_steep{"the shake is not level", "加振が水平ではありません"};
+inline constexpr Phrase k_lines_moving{"nothing starts at rest on a level floor",
+                                       "水平な床で静止から始まる家具がありません"};
+inline constexpr Phrase k_lines_no_block{
+    "no body stands freely on the floor, bears nothing, has edges across the shake and lifts before it "
+    "slides",
+    "床に自立し、何も載せず、加振に直交する底辺を持ち、滑る前に浮き上がる家具がありません"};
 inline constexpr Phrase k_present{"now", "現在"};
 inline constexpr Phrase k_duration_axis{"duration, s", "継続時間 [s]"};
 inline constexpr Phrase k_one_cycle{"one cycle alone, exact", "1周期のみ（厳密解）"};

@@ -246,6 +246,9 @@ render::Legend Bridge::legend(const io::FrameRow& row, const PictureSettings& se
   }
   if (settings.exaggeration != 1) out.notes.push_back(say(window_words::k_deformed, settings.exaggeration));
   if (rigid > 0) out.notes.push_back(say(window_words::k_some_rigid));
+  const auto cannot_yield = [](const Element& element) { return !std::isfinite(element.capacity[0]); };
+  if (name.at_yield && !*name.unit && yield && ranges::any_of(scene_.setup.model.elements, cannot_yield))
+    out.notes.push_back(say(window_words::k_some_cannot_yield));
   return out;
 }
 

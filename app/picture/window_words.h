@@ -356,6 +356,7 @@ inline constexpr Phrase k_yield{"yield", "降伏"};
 inline constexpr Phrase k_all_rigid{"no stresses: computed as what does not bend",
                                     "変形しない物体として計算（応力なし）"};
 inline constexpr Phrase k_some_rigid{"grey: rigid, no stresses", "灰色：剛体（応力なし）"};
+inline constexpr Phrase k_some_cannot_yield{"grey: cannot yield", "灰色：降伏しない部材"};
 inline constexpr Phrase k_cannot_yield{"nothing here can yield", "降伏する部材なし"};
 inline constexpr Phrase k_deformed{"deformation ×{0:g}", "変形倍率 ×{0:g}"};
 inline constexpr Phrase k_not_finite{"not drawn: a number of this instant is not finite",

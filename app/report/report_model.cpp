@@ -7,6 +7,7 @@
 #include "app/report/report_parts.h"
 #include "app/support/integrators.h"
 #include "app/support/model_words.h"
+#include "app/support/models_in_brief.h"
 #include "solver/body/model_level.h"
 #include "solver/contact/contact_law.h"
 
@@ -54,12 +55,13 @@ std::string reason_in_words(const ReportPage& page, const std::string& reason) {
 std::string models(const ReportPage& page, const ordered_json& body) {
   if (body["models"].empty()) return page.say(level_of(body["model"]).phrase);
   std::string out;
-  for (const ordered_json& change : body["models"]) {
+  for (const ordered_json& change : models_in_brief(body["models"])) {
     const std::string model = page.text(level_of(change["model"]).phrase),
-                      reason = reason_in_words(page, change["reason"]);
-    const double from = change["from_s"].get<double>();
-    out += out.empty() ? model + " (" + reason + ")"
-                       : "; " + page.text(words::k_model_from, model, short_shown(from), reason);
+                      reason = reason_in_words(page, change["reason"]), times = change["times"],
+                      from = short_shown(change["from_s"].get<double>());
+    out += out.empty()     ? model + " (" + reason + ")"
+           : times.empty() ? "; " + page.text(words::k_model_from, model, from, reason)
+                           : "; " + page.text(words::k_model_times, model, from, reason, times);
   }
   return escaped(out);
 }

@@ -396,8 +396,9 @@ inline constexpr Phrase k_friction{
 inline constexpr Phrase k_frames_elastic{"The material does not yield or break.",
                                          "材料は降伏も破断もしない。"};
 inline constexpr Phrase k_frames_plastic{
-    "Members yield as perfectly plastic hinges at their ends of elements{0}.",
-    "部材は要素端の完全塑性ヒンジとして降伏する{0}。"};
+    "Members whose material has a yield stress yield as perfectly plastic hinges at the ends of their "
+    "elements{0}.",
+    "降伏応力をもつ材料の部材は、要素端の完全塑性ヒンジとして降伏する{0}。"};
 inline constexpr Phrase k_frames_break{" and may break", "（破断を含む）"};
 inline constexpr Phrase k_no_anchors{
     "No anchor, strap or pole holds the furniture: the scene has none in place.",
@@ -414,6 +415,7 @@ inline constexpr Phrase k_stopped{"{0} s (stopped by the scene's condition)",
 inline constexpr Phrase k_integrator{"time integration", "時間積分法"};
 inline constexpr Phrase k_of_models{"{0} ({1})", "{0}（{1}）"};
 inline constexpr Phrase k_model_from{"from {1} s {0} ({2})", "{1} s から{0}（{2}）"};
+inline constexpr Phrase k_model_times{"from {1} s {3} times {0} ({2})", "{1} s から{3}回{0}（{2}）"};
 inline constexpr Phrase k_step{"time step", "時間刻み"};
 inline constexpr Phrase k_steps{"{0} steps, {1} rejected", "{0}ステップ、棄却{1}"};
 inline constexpr Phrase k_adaptive{"adaptive, tolerance {0}, mean {1} ms", "可変、許容誤差 {0}、平均 {1} ms"};

@@ -26,7 +26,7 @@ inline constexpr Japanese<LevelReason> k_level_reasons[] = {
     {LevelReason::asked, "指定による"},
     {LevelReason::motion, "運動のみ必要"},
     {LevelReason::stress, "応力が必要"},
-    {LevelReason::contact_frequency, "接触剛性が家具の剛性に近い"},
+    {LevelReason::blow, "弾性体には硬すぎる接触に衝突する"},
     {LevelReason::yield, "断面が降伏に近い"},
     {LevelReason::deformation, "微小変形でない"},
     {LevelReason::near, "フレームの家具が近い"},

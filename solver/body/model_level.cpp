@@ -61,6 +61,7 @@ constexpr BodyModelTraits k_models[] = {
      .bends = true,
      .takes_supports = false,
      .may_be_frame = false,
+     .lists_start = true,
      .choose = asked<ModelLevel::elastic>},
     {.kind = BodyModel::frame,
      .word = "frame",
@@ -80,8 +81,8 @@ const char* name(LevelReason reason) {
       return "only motion is wanted";
     case LevelReason::stress:
       return "stresses are wanted";
-    case LevelReason::contact_frequency:
-      return "contacts are nearly as stiff as the body";
+    case LevelReason::blow:
+      return "it strikes on contacts too stiff for an elastic body";
     case LevelReason::yield:
       return "a section is near yield";
     case LevelReason::deformation:

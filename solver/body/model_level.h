@@ -18,10 +18,14 @@
 //   - rigid: rigid_error()
 //   - planar: that and hard_floor_error() (planar_body.h)
 //   - elastic, theta being the rotation of a node relative to the body (sum over the modes): what theta^2/2
-//     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn
+//     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn,
+//     and before and while it strikes something what a blow raises beyond its modes, if that is more
+//     (ReducedBody::blow_error)
 // A trajectory that comes near the critical angle, or bounces often, can enlarge them.
 // It comes down to its base level when no such frame is near, no hinge ever formed in it, it does not fall,
-// and for k_calm_for sqrt(f + 1) < k_calm_yield and its strain energy was below k_negligible m g reach.
+// and for k_calm_for sqrt(f + 1) < k_calm_yield, at both ends of which its strain energy but for that of
+// modes is below k_negligible of m g reach and of the largest energy, and its error would be half of what is
+// allowed.
 //
 // Up from a planar block: it sinks into the springs of its contacts so far that they bear what the floor
 // bore. Up: nodes are placed where the modes, and what loads add to them statically, put them, and moved
@@ -43,7 +47,7 @@ namespace topple {
 
 inline constexpr double k_near_yield = 0.9;   ///< sqrt(f + 1)
 inline constexpr double k_calm_yield = 0.45;  ///< sqrt(f + 1)
-inline constexpr double k_calm_for = 0.2;     ///< s
+inline constexpr double k_calm_for = 0.08;    ///< s
 inline constexpr double k_negligible = 1e-3;  ///< strain energy over m g reach
 
 /// A few words: "a section is near yield".

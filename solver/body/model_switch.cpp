@@ -37,12 +37,63 @@ bool is_bent(const Model& model, const State& state, int b) {
   });
 }
 
-// It moves, tilted beyond its least critical angle.
-bool is_falling(const Model& model, const Parameters& parameters, const State& state, int b) {
-  const Body& body = model.bodies[b];
-  return tilt(body_pose(model, state, b)) > least_tipping_angle(body) &&
-         body_momentum(model, state, b).velocity.squaredNorm() / 2 >
-             k_negligible * parameters.gravity.norm() * body.reach;
+// It moves, tilted beyond its least critical angle: a body that is no frame, or what reduce() made of one.
+bool is_falling(const Body& body, const Parameters& parameters, const BodyState& s) {
+  return tilt({s.position, s.rotation}) > least_tipping_angle(body) &&
+         s.velocity.squaredNorm() / 2 > k_negligible * parameters.gravity.norm() * body.reach;
+}
+
+// J, of a body's energy.
+double negligible(const Body& body, const Parameters& parameters, const State& state) {
+  return k_negligible * std::min(body.mass * parameters.gravity.norm() * body.reach, state.energy.largest);
+}
+
+// m/s: slower, a blow is not looked at.
+double least_blow(const Body& body, const Parameters& parameters, const State& state,
+                  const ReducedBody& elastic) {
+  return std::max(elastic.least_blow(parameters.contact, parameters.gravity.norm()),
+                  std::sqrt(2 * negligible(body, parameters, state) / body.mass));
+}
+
+// A rigid body's motion, floor's frame.
+struct Motion {
+  BodyPose pose;
+  Vec3 velocity, spin;  // m/s, rad/s
+};
+
+Motion motion_of(const Model& model, const State& state, int b) {
+  const BodyPose pose = body_pose(model, state, b);
+  const BodyMomentum momentum = body_momentum(model, state, b);
+  const Vec3 own = pose.rotation.conjugate() * momentum.angular_momentum;
+  return {pose, momentum.velocity, pose.rotation * (model.bodies[b].inertia.inverse() * own)};
+}
+
+// The contact points of a body, from its centre of gravity, reference axes.
+Eigen::AlignedBox3d box_of(const Model& model, const Body& body) {
+  Eigen::AlignedBox3d box;
+  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p)
+    box.extend(model.node_position[model.contact_points[p].node] - body.centre_of_gravity);
+  return box;
+}
+
+// Whether points of b reach the box around those of a within k_blow_ahead at more than `least`, m/s, or move
+// so in it.
+bool meets(const Model& model, const Body& a, const Motion& of_a, const Body& b, const Motion& of_b,
+           double least) {
+  const Eigen::AlignedBox3d box = box_of(model, a);
+  for (int p = b.first_contact_point; p < b.first_contact_point + b.contact_point_count; ++p) {
+    const ContactPoint& point = model.contact_points[p];
+    const Vec3 arm = of_b.pose.rotation * (model.node_position[point.node] - b.centre_of_gravity),
+               from_a = of_b.pose.centre + arm - of_a.pose.centre,
+               velocity = of_b.velocity + of_b.spin.cross(arm) - of_a.velocity - of_a.spin.cross(from_a);
+    const Vec3 at = of_a.pose.rotation.conjugate() * from_a - box.center(),
+               moves = of_a.pose.rotation.conjugate() * velocity,
+               gaps = at.cwiseAbs() - box.sizes() / 2 - Vec3::Constant(point.width);
+    int side;
+    const double gap = gaps.maxCoeff(&side), nears = at[side] > 0 ? -moves[side] : moves[side];
+    if (nears > least && gap < k_blow_ahead * nears) return true;
+  }
+  return false;
 }
 
 double strain_energy(const Model& model, int b, const std::vector<SectionForces>& sections) {
@@ -111,6 +162,30 @@ void ModelSwitch::find_near(const std::vector<Island>& islands) {
       }
 }
 
+// Which bodies whose stresses are asked for will soon be struck by another one.
+void ModelSwitch::find_meetings(const std::vector<Island>& islands, const Switching& on) {
+  const auto& [model, parameters, now, end, state, parts] = on;
+  meets_.assign(base_.size(), false);
+  if (!parameters.want_stress) return;
+  for (const Island& island : islands) {
+    std::array<int, 2> last{-1, -1};  // pairs of elements of two bodies stand together
+    for (const ElementPair& pair : island.candidate_pairs) {
+      const std::array<int, 2> two{body_of(model, pair.a), body_of(model, pair.b)};
+      if (two == last || (meets_[two[0]] && meets_[two[1]])) continue;
+      last = two;
+      const std::array<Motion, 2> motions{motion_of(model, state, two[0]), motion_of(model, state, two[1])};
+      for (const int k : {0, 1}) {
+        const int b = two[k], other = two[1 - k];
+        if (base_[b].level != ModelLevel::elastic || meets_[b]) continue;
+        const Body &own = model.bodies[b], &its = model.bodies[other];
+        const double least = least_blow(own, parameters, state, parts.reduced(state, b));
+        meets_[b] = meets(model, own, motions[k], its, motions[1 - k], least) ||
+                    meets(model, its, motions[1 - k], own, motions[k], least);
+      }
+    }
+  }
+}
+
 // Of the body's present level (model_level.h); a frame is what the others are measured by. Infinite: not
 // known.
 double ModelSwitch::error_estimate(const Model& model, const Parameters& parameters, const State& state,
@@ -119,10 +194,25 @@ double ModelSwitch::error_estimate(const Model& model, const Parameters& paramet
   if (traits(s.level).moves_nodes) return 0;
   if (traits(s.level).has_block) return rigid_error_[b] + parts.planar(b).hard_floor_error(parameters, state);
   if (!traits(s.level).has_modes) return rigid_error_[b];
-  const ReducedBody& elastic = parts.reduced(state, b);
-  return elastic.lands_on_what_gives(parameters.contact.alpha)
-             ? std::numeric_limits<double>::infinity()
-             : elastic_error(model.bodies[b], parameters, elastic.rotation_bound(s));
+  return elastic_estimate(model, parameters, state, s, parts.reduced(state, b), b).error;
+}
+
+// Of a body, as elastic at `s`, where its contacts were found last.
+ModelSwitch::Estimate ModelSwitch::elastic_estimate(const Model& model, const Parameters& parameters,
+                                                    const State& state, const BodyState& s,
+                                                    const ReducedBody& elastic, int b) const {
+  const Body& body = model.bodies[b];
+  if (elastic.lands_on_what_gives(parameters.contact.alpha))
+    return {std::numeric_limits<double>::infinity(), LevelReason::fall};
+  const Estimate bends{elastic_error(body, parameters, elastic.rotation_bound(s)), LevelReason::deformation};
+  if (!parameters.want_stress) return bends;
+  double blow = elastic.blow_error(parameters.contact, false);
+  if (blow > parameters.accuracy) {  // else it is allowed whatever strikes
+    const auto [on_base, aside] = elastic.strikes_soon(s, least_blow(body, parameters, state, elastic));
+    if (!on_base && !aside && !meets_[b]) return bends;
+    if (!aside && !meets_[b]) blow = elastic.blow_error(parameters.contact, true);
+  }
+  return blow > bends.error ? Estimate{blow, LevelReason::blow} : bends;
 }
 
 // Of a body on the level planar.
@@ -136,21 +226,23 @@ LevelChoice ModelSwitch::choose_of_block(const Switching& on, int b) {
   return reason ? LevelChoice{ModelLevel::rigid, *reason} : LevelChoice{s.level, s.reason};
 }
 
-// Whether a frame, as an elastic body, would be on what makes that one a frame.
-bool ModelSwitch::would_lie(const Switching& on, ModelLevel level, int b) {
-  if (!traits(level).has_modes) return false;
-  ReducedBody& body = on.parts.reduced(on.state, b);
-  body.remember(on.state.anchors);
-  body.find_contacts(on.now, reduce(on.model, on.state, b, level), on.state.stick);
-  return body.lands_on_what_gives(on.parameters.contact.alpha);
-}
-
-// Whether a frame, as an elastic body, would soon be on what makes it a frame again.
-bool ModelSwitch::would_bend(const Switching& on, ModelLevel level, int b) {
+// Whether a frame of this strain energy does not fall, and on this level keeps that and would not soon be a
+// frame again.
+bool ModelSwitch::may_descend_to(const Switching& on, ModelLevel level, int b, double strain) const {
   constexpr double k_soon = 0.5;  // of the accuracy
-  if (!traits(level).has_modes || on.parameters.models[b] != BodyModel::automatic) return false;
-  const double bound = on.parts.reduced(on.state, b).rotation_bound(reduce(on.model, on.state, b, level));
-  return elastic_error(on.model.bodies[b], on.parameters, bound) > k_soon * on.parameters.accuracy;
+  const Body& body = on.model.bodies[b];
+  const BodyState s = reduce(on.model, on.state, b, level);
+  const double held =
+      traits(level).has_modes ? (body.elastic->frequency * s.amplitude).square().sum() / 2 : 0;
+  if (!(strain - held < negligible(body, on.parameters, on.state)) || is_falling(body, on.parameters, s))
+    return false;
+  if (!traits(level).has_modes) return true;
+  ReducedBody& elastic = on.parts.reduced(on.state, b);
+  elastic.remember(on.state.anchors);
+  elastic.find_contacts(on.now, s, on.state.stick);
+  const double allowed = on.parameters.models[b] == BodyModel::automatic ? k_soon * on.parameters.accuracy
+                                                                         : std::numeric_limits<double>::max();
+  return elastic_estimate(on.model, on.parameters, on.state, s, elastic, b).error <= allowed;
 }
 
 // At the state of `on`, where the contacts of those that are not frames have been found.
@@ -163,27 +255,27 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   if (traits(s.level).has_block) return choose_of_block(on, b);
   if (base.level == ModelLevel::frame) return base;
   if (s.level == ModelLevel::frame) {
-    const Body& body = model.bodies[b];
-    const bool calm = strain_energy(model, b, parts.sections) <
-                          k_negligible * body.mass * parameters.gravity.norm() * body.reach &&
-                      !is_bent(model, state, b) && yield_ratio(model, b, parts.sections) < k_calm_yield &&
-                      !is_falling(model, parameters, state, b) && !would_bend(on, base.level, b);
-    if (!calm)
-      s.calm_since = -1;
-    else if (s.calm_since < 0)
-      s.calm_since = state.time;
-    else if (state.time - s.calm_since >= k_calm_for && !would_lie(on, base.level, b))
-      return {base.level, LevelReason::calm};
+    constexpr double k_much = 10;  // times what is negligible: it is not looked at before
+    const double strain = strain_energy(model, b, parts.sections);
+    const bool quiet = strain < k_much * negligible(model.bodies[b], parameters, state) &&
+                       !is_bent(model, state, b) && yield_ratio(model, b, parts.sections) < k_calm_yield;
+    const bool ends = quiet && s.calm_since >= 0 && state.time - s.calm_since >= k_calm_for;
+    if (!quiet) s.calm_since = -1;
+    if (quiet && (s.calm_since < 0 || ends)) {
+      const bool calm = may_descend_to(on, base.level, b, strain);
+      if (calm && ends) return {base.level, LevelReason::calm};
+      s.calm_since = calm ? state.time : -1;
+    }
     return {s.level, s.reason};
   }
   const bool automatic = parameters.models[b] == BodyModel::automatic;
   if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
     return {ModelLevel::frame,
-            std::isfinite(s.error_estimate) ? LevelReason::deformation : LevelReason::fall};
+            elastic_estimate(model, parameters, state, s, parts.reduced(state, b), b).reason};
   // before the blow: an elastic body has a spring of its own at each contact point, a frame has not, and to
   // change within the blow would put energy into it
   if (automatic && s.level == ModelLevel::elastic && near_yield_[b] &&
-      is_falling(model, parameters, state, b))
+      is_falling(model.bodies[b], parameters, s))
     return {ModelLevel::frame, LevelReason::neighbour};
   if (watched_[b] && traits(s.level).has_stresses) {
     if (yields_[b]) return {ModelLevel::frame, LevelReason::yield};
@@ -269,6 +361,7 @@ void ModelSwitch::start(const Model& model, const Parameters& parameters, State&
   choose_islands(parts.islands(state), parameters, state);
   find_near(parts.islands(state));
   const StepInputs now(parameters, state.time);
+  find_meetings(parts.islands(state), {model, parameters, now, now, state, parts});
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     LevelChoice choice = choice_[b];
     if (traits(choice.level).has_block) choice.level = ModelLevel::rigid;
@@ -282,7 +375,8 @@ void ModelSwitch::start(const Model& model, const Parameters& parameters, State&
   }
   parts.arrange(state);
   for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b)
-    state.bodies[b].error_estimate = error_estimate(model, parameters, state, parts, b);
+    if (!traits(state.bodies[b].level).has_modes)  // whose first step may be that of a frame
+      state.bodies[b].error_estimate = error_estimate(model, parameters, state, parts, b);
 }
 
 bool ModelSwitch::update(const Model& model, const Parameters& parameters, const StepInputs& now,
@@ -292,6 +386,7 @@ bool ModelSwitch::update(const Model& model, const Parameters& parameters, const
   parts.arrange(state);
   const std::vector<Island>& islands = parts.islands();
   find_near(islands);
+  find_meetings(islands, on);
   parts.find_forces(now, state, watched_);
   choice_.clear();
   const int count = static_cast<int>(model.bodies.size());

@@ -32,16 +32,22 @@ class ModelSwitch {
 
  private:
   struct Switching;
+  struct Estimate {
+    double error;        // as Parameters::accuracy; infinite: not known
+    LevelReason reason;  // for a frame, where that is not allowed
+  };
 
   double error_estimate(const Model& model, const Parameters& parameters, const State& state, Parts& parts,
                         int body) const;
   void find_base(const Model& model, const Parameters& parameters);
   LevelChoice choose(const Switching& on, int body);
   LevelChoice choose_of_block(const Switching& on, int body);
-  static bool would_lie(const Switching& on, ModelLevel level, int body);
-  static bool would_bend(const Switching& on, ModelLevel level, int body);
+  Estimate elastic_estimate(const Model& model, const Parameters& parameters, const State& state,
+                            const BodyState& s, const ReducedBody& elastic, int body) const;
+  bool may_descend_to(const Switching& on, ModelLevel level, int body, double strain) const;
   void begin_block(const Switching& on, int body);
   void find_near(const std::vector<Island>& islands);
+  void find_meetings(const std::vector<Island>& islands, const Switching& on);
   void choose_islands(const std::vector<Island>& islands, const Parameters& parameters, State& state);
   void change(const Switching& on, LevelChoice choice, int body);
 
@@ -53,6 +59,7 @@ class ModelSwitch {
   std::vector<char> changed_;        // per body: its level, since the last step
   std::vector<char> near_;           // per body: another may touch it
   std::vector<char> near_yield_;     // per body: likewise, and one of those that may is watched_
+  std::vector<char> meets_;          // per body: of which stresses are asked for, and another soon strikes it
 };
 
 }  // namespace topple

@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-16";
+  return "topple-17";
 }
 
 }  // namespace topple

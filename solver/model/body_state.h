@@ -33,15 +33,16 @@ constexpr const LevelTraits& traits(ModelLevel level) {
 
 /// Why a body is on its level (rules: model_level.h). Recordings hold these numbers.
 enum class LevelReason : std::uint8_t {
-  asked = 0,              ///< the scene or an edit names it
-  motion = 1,             ///< nothing but motion is asked for
-  stress = 2,             ///< stresses are asked for
-  contact_frequency = 3,  ///< of old recordings: it bounces on its contacts almost as fast as it vibrates
-  yield = 4,              ///< a section comes near its yield surface
-  deformation = 5,        ///< it deforms too much for linear elasticity, by Parameters::accuracy
-  near = 6,               ///< a frame may touch it, or a body that touches it (State::candidate_pairs)
-  calm = 7,               ///< no reason for a higher level is left, and no hinge has formed
-  bending = 8,            ///< it bends too much for a rigid body, by Parameters::accuracy
+  asked = 0,        ///< the scene or an edit names it
+  motion = 1,       ///< nothing but motion is asked for
+  stress = 2,       ///< stresses are asked for
+  blow = 3,         ///< it strikes on contacts too stiff for its modes, by Parameters::accuracy; until
+                    ///< topple-16: its contacts were nearly as stiff as it was
+  yield = 4,        ///< a section comes near its yield surface
+  deformation = 5,  ///< it deforms too much for linear elasticity, by Parameters::accuracy
+  near = 6,         ///< a frame may touch it, or a body that touches it (State::candidate_pairs)
+  calm = 7,         ///< no reason for a higher level is left, and no hinge has formed
+  bending = 8,      ///< it bends too much for a rigid body, by Parameters::accuracy
   // a planar block became a rigid body:
   neighbour = 9,  ///< a wall or another body may touch it
   fall = 10,      ///< another part of it is about to meet the floor

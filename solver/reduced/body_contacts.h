@@ -218,6 +218,8 @@ class BodyContacts {
   /// Pairs of a point and a plane, groups filled up to four points.
   std::size_t pairs() const { return sides_.size() * 4; }
   double least_length() const { return least_length_; }  ///< m, least L
+  /// N/m, of the stiffest contact with a plane, where it bears a quarter of the weight; 0 without planes.
+  double stiffness(const ContactLaw& law) const { return law.alpha * slope_at_rest(law) / least_length_; }
   /// kg, the share of the body that a contact carries.
   double share_of_mass() const { return contact_mass_; }
   double grip() const { return grip_; }  ///< Body::grip

@@ -173,6 +173,8 @@ std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index)
   residual -= mass_all * (all.transpose() * residual).eval();
   for (int c = 0; c < residual.cols(); ++c) lu.solve(residual.col(c).data());
   residual -= all * (mass_all.transpose() * residual).eval();
+  basis->give.resize(3 * n);
+  for (int i = 0; i < n; ++i) basis->give.segment<3>(3 * i) = residual.block<3, 3>(6 * i, 3 * i).diagonal();
   complete(model, body, *basis);
   return basis;
 }

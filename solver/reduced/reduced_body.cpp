@@ -54,7 +54,18 @@ ReducedBody::ReducedBody(const Model& model, int body)
       inverse_inertia_(packed(Mat3(model.bodies[body].inertia.inverse()))),
       basis_(model.bodies[body].elastic),
       contacts_(model, body),
-      anchors_(model, body) {}
+      anchors_(model, body) {
+  if (!basis_) return;
+  const Body& own = model.bodies[body];
+  for (int p = own.first_contact_point; p < own.first_contact_point + own.contact_point_count; ++p) {
+    const int node = node_of(p) - own.first_node;
+    const Vec3 give = basis_->give.segment<3>(3 * node);
+    greatest_shape_ = std::max(greatest_shape_, basis_->shape.middleRows<3>(6 * node).norm());
+    greatest_give_ = std::max(greatest_give_, give.maxCoeff());
+    if (ranges::find(own.base_points, p) != own.base_points.end())
+      base_give_ = std::max(base_give_, give.z());
+  }
+}
 
 Vec3 ReducedBody::angular_acceleration(const BodyState& s) const {
   const PackVec3 omega = packed(s.angular_velocity),
@@ -525,16 +536,6 @@ void ReducedBody::add_residual(const BodyState& s, State& state) const {
     Quat& q = state.rotation[body.first_node + i];
     q = (exp_quaternion(s.rotation * Vec3(u.segment<3>(6 * i + 3))) * q).normalized();
   }
-}
-
-bool ReducedBody::lands_on_what_gives(double alpha) const {
-  const std::vector<int>& base = model_.bodies[body_].base_points;
-  bool any = false;
-  contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
-    any = any ||
-          (alpha * touch.give[k] > contacts_.length(touch, k) && ranges::find(base, point) == base.end());
-  });
-  return any;
 }
 
 double ReducedBody::yield_bound(const BodyState& s) const {

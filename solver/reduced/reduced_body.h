@@ -50,6 +50,8 @@ struct ReducedScratch {
   std::vector<BodyContacts::TouchBuffer> buffers;
 };
 
+inline constexpr double k_blow_ahead = 0.015;  ///< s before a blow, more than a step
+
 /// How a substep went: unless its end is reached, nothing is changed.
 enum class SubstepEnd { reached, too_long, unsolved };
 
@@ -123,6 +125,19 @@ class ReducedBody {
   /// softer than itself. `alpha`: N, of Eq. 2. Where a whole side lands, its points are pressed in together,
   /// less than each would be alone: the local springs are then far too soft.
   bool lands_on_what_gives(double alpha) const;
+  /// Whether points of it meet a plane within k_blow_ahead, or press on one, at more than `least`, m/s: those
+  /// of its base, others.
+  struct Strikes {
+    bool on_base = false, aside = false;
+  };
+  Strikes strikes_soon(const BodyState& s, double least) const;
+  /// m/s, at which it would strike a contact of `law` with a fifth of its weight (`gravity`: m/s^2): v sqrt(k
+  /// m).
+  double least_blow(const ContactLaw& law, double gravity) const;
+  /// Estimated error of the stresses that a blow raises, on its base from below or, not `on_base`, anywhere,
+  /// as a share of them: four times the greatest ratio of a contact's stiffness to that of the point which
+  /// the modes leave out, at most 1. Measured (assets/guide/models.md).
+  double blow_error(const ContactLaw& law, bool on_base) const;
   /// Upper bound of sqrt(f + 1) (plasticity.h) over all sections.
   double yield_bound(const BodyState& s) const;
   /// Upper bound of the rotation of a node relative to the body by the modes, rad.
@@ -187,6 +202,8 @@ class ReducedBody {
   const int body_;
   const double mass_, reach_, least_inertia_;
   const PackMat3 inertia_, inverse_inertia_;  // material axes
+  double base_give_ = 0, greatest_give_ = 0;  // m/N, ElasticBasis::give of points of the base along z, of all
+  double greatest_shape_ = 0;                 // 1/sqrt(kg), norm of the displacements of a point in all modes
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;
   BodyAnchors anchors_;

@@ -24,14 +24,13 @@ struct Stored {
 };
 constexpr Stored<ModelLevel> k_levels[] = {
     {ModelLevel::rigid, 0}, {ModelLevel::elastic, 1}, {ModelLevel::frame, 2}, {ModelLevel::planar, 3}};
-constexpr Stored<LevelReason> k_reasons[] = {{LevelReason::asked, 0},   {LevelReason::motion, 1},
-                                             {LevelReason::stress, 2},  {LevelReason::contact_frequency, 3},
-                                             {LevelReason::yield, 4},   {LevelReason::deformation, 5},
-                                             {LevelReason::near, 6},    {LevelReason::calm, 7},
-                                             {LevelReason::bending, 8}, {LevelReason::neighbour, 9},
-                                             {LevelReason::fall, 10},   {LevelReason::plane, 11},
-                                             {LevelReason::held, 12},   {LevelReason::contact, 13},
-                                             {LevelReason::jammed, 14}, {LevelReason::solid, 15}};
+constexpr Stored<LevelReason> k_reasons[] = {
+    {LevelReason::asked, 0},     {LevelReason::motion, 1},   {LevelReason::stress, 2},
+    {LevelReason::blow, 3},      {LevelReason::yield, 4},    {LevelReason::deformation, 5},
+    {LevelReason::near, 6},      {LevelReason::calm, 7},     {LevelReason::bending, 8},
+    {LevelReason::neighbour, 9}, {LevelReason::fall, 10},    {LevelReason::plane, 11},
+    {LevelReason::held, 12},     {LevelReason::contact, 13}, {LevelReason::jammed, 14},
+    {LevelReason::solid, 15}};
 constexpr Stored<planar::Mode> k_block_modes[] = {{planar::Mode::rest, 0},
                                                   {planar::Mode::slide, 1},
                                                   {planar::Mode::rock, 2},

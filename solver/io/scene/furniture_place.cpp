@@ -90,7 +90,7 @@ class Arrangement {
 
   static Stand at(const Entry& entry) {
     const std::vector<double> at = entry.has("at") ? entry.numbers("at") : std::vector<double>{0, 0};
-    const double yaw = entry.number("yaw");
+    const double yaw = entry.has("yaw") ? entry.number("yaw") : 0;
     Vec3 front = exp_quaternion(yaw * Vec3::UnitZ()) * Vec3::UnitX();
     // a quarter of a turn is one: rounding would leave a frame without its symmetry
     constexpr double k_rounding = 1e-15;
@@ -110,9 +110,10 @@ class Arrangement {
         piece.entry.fail("against", "the wall \"" + name + "\" leans: its normal is not horizontal");
       const std::vector<double> face = wall.numbers("at");
       const double from_wall = gap(piece, k_gap_to_wall) + footprint(piece).x() / 2;
-      return stand_facing(Vec3(face[0], face[1], 0) + from_wall * normal +
-                              piece.entry.number("offset") * to_the_right(normal),
-                          normal);
+      return stand_facing(
+          Vec3(face[0], face[1], 0) + from_wall * normal +
+              (piece.entry.has("offset") ? piece.entry.number("offset") : 0) * to_the_right(normal),
+          normal);
     }
     piece.entry.fail("against", no_such("[[wall]]", name, known));
   }

@@ -250,11 +250,11 @@ void add_furniture(std::vector<Key>& keys) {
       .at_least(2)
       .absent_means("[0, 0]");
   rows.number("yaw", D::angle, "deg", -360 * k_degree, 360 * k_degree, "about the vertical; only with `at`")
-      .absent(0);
+      .absent_means("0 deg");
   rows.plain("against", T::text, "a [[wall]], to which it turns its back").absent_means("`at`");
   rows.number("offset", D::length, "m", -k_far, k_far,
               "of its middle from the wall's `at`, to the right as one faces the wall; only with `against`")
-      .absent(0);
+      .absent_means("0 m");
   rows.plain("beside", T::text,
              "another [[furniture]], to the right of it as one faces it, its back in line with that one's")
       .absent_means("`at`");

@@ -154,7 +154,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Kept{"format-10-topple-13", 10, "topple-13", true},
                       Kept{"format-10-topple-14", 10, "topple-14", true},
                       Kept{"format-10-topple-15", 10, "topple-15", true},
-                      Kept{"format-10-topple-16", 10, "topple-16", true}),
+                      Kept{"format-10-topple-16", 10, "topple-16", true},
+                      Kept{"format-10-topple-17", 10, "topple-17", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');

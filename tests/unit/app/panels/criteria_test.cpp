@@ -155,5 +155,20 @@ TEST(MapWords, the_nearest_cell_is_not_called_the_present_shake) {
   EXPECT_TRUE(present_in_words(found, now).starts_with("The cell of the shake as it is now: "));
 }
 
+TEST(MapWords, why_there_are_no_lines_is_said_in_both_languages) {
+  using Sets = std::vector<std::string>;
+  for (const auto& [name, sets] : {std::pair("paper-a", Sets{"contact.friction=0.1"}),
+                                   {"paper-a", Sets{"shake.1.direction=[1, 0, 1]"}},
+                                   {"paper-a", Sets{"run.settle=false"}},
+                                   {"sixth-floor", Sets{}}}) {
+    const io::Scene scene = io::load_scene(name, sets);
+    const study::OverturnPlan plan = study::plan_overturn(scene, "", "");
+    const std::string why = study::criteria(scene.setup, plan.x, plan.y).why_not;
+    ASSERT_NE(why, "");
+    EXPECT_EQ(no_lines_in_words(Language::english, why), why);
+    EXPECT_NE(no_lines_in_words(Language::japanese, why), why);
+  }
+}
+
 }  // namespace
 }  // namespace topple::app

@@ -227,5 +227,73 @@ TEST(ElasticBody, swings_at_the_frequency_of_its_mode) {
   EXPECT_NEAR(sim.state.bodies[0].amplitude[1], q * std::cos(basis.frequency[1] * sim.state.time), 1e-9 * q);
 }
 
+constexpr double k_stiff = 2e5;  // N, on which blows last about as long as a period of the highest mode
+
+topple::Setup let_go_on_stiff_contacts(BodyModel model) {
+  topple::Setup setup = paper_cabinet(model, 3 / k_degrees);
+  setup.parameters.contact.alpha = k_stiff;
+  setup.parameters.contact.restitution = 0;
+  setup.parameters.adaptive = true;
+  return setup;
+}
+
+/// One rocks against the other, 40 mm beside it.
+topple::Setup knocks(BodyModel model) {
+  topple::Setup setup = shaken(0.5, -4 / k_degrees);
+  CabinetSpec spec = tall_cabinet();
+  spec.name = "second";
+  spec.at.x() = 0.42;
+  setup.starts.push_back(add_cabinet(setup.model, spec));
+  setup.parameters.contact.alpha = k_stiff;
+  setup.parameters.adaptive = true;
+  compute_as(setup, model);
+  return setup;
+}
+
+Outcome outcome_of(const topple::Setup& setup) {
+  topple::Run run(setup);
+  while (!run.over() && run.advance().ok()) {
+  }
+  EXPECT_TRUE(run.over());
+  return run.outcome();
+}
+
+// Frames change by 0.6 and 7 % (one that knocks) at a tenth of the tolerance.
+TEST(Blow, makes_an_elastic_body_a_frame_where_stresses_are_asked_for) {
+  for (topple::Setup (*scene)(BodyModel) : {let_go_on_stiff_contacts, knocks}) {
+    topple::Setup frames = scene(BodyModel::frame);
+    frames.parameters.tolerance /= 10;
+    const Outcome automatic = outcome_of(scene(BodyModel::automatic)), truth = outcome_of(frames),
+                  elastic = outcome_of(scene(BodyModel::elastic));
+    for (std::size_t b = 0; b < truth.bodies().size(); ++b) {
+      const double stress = truth.bodies()[b].peak_stress;
+      EXPECT_NEAR(automatic.bodies()[b].peak_stress, stress, 0.02 * stress);
+      EXPECT_GT(elastic.bodies()[b].peak_stress, 1.2 * stress);
+      EXPECT_GT(elastic.bodies()[b].level_changes[0].error_estimate, 0.2);
+      EXPECT_LE(automatic.bodies()[b].level_changes[0].error_estimate, 0.01);
+    }
+    EXPECT_EQ(automatic.bodies()[0].level_changes[1].level, ModelLevel::frame);
+    EXPECT_EQ(automatic.bodies()[0].level_changes[1].reason, LevelReason::blow);
+  }
+}
+
+// Nor where nothing strikes: what stands, and sways with the floor.
+TEST(Blow, makes_no_frame_of_what_is_allowed_its_error) {
+  topple::Setup motion = let_go_on_stiff_contacts(BodyModel::automatic), allowed = motion, stands = motion;
+  motion.parameters.want_stress = false;
+  motion.parameters.accuracy = 1e-6;  // elastic, of which theta^2/2 is less
+  allowed.parameters.accuracy = 1;
+  stands.starts[0] = paper_cabinet(BodyModel::automatic).starts[0];
+  stands.run.settle = true;
+  shake(stands, 0.5, 5);
+  for (const topple::Setup* setup : {&motion, &allowed, &stands}) {
+    const Outcome outcome = outcome_of(*setup);
+    const BodyOutcome& o = outcome.bodies()[0];
+    ASSERT_EQ(o.level_changes.size(), 1u) << name(o.level_changes[1].reason);
+    EXPECT_EQ(o.level_changes[0].level, ModelLevel::elastic);
+    EXPECT_EQ(o.level_changes[0].error_estimate > 0.2, setup == &allowed);
+  }
+}
+
 }  // namespace
 }  // namespace topple::test

@@ -277,8 +277,8 @@ TEST(ModelLevel, is_a_frame_while_one_is_near) {
   EXPECT_EQ(run.state().bodies[0].level, ModelLevel::elastic);
   while (!run.over()) ASSERT_TRUE(run.advance().ok());
   const auto& changes = run.outcome().bodies()[0].level_changes;
-  ASSERT_FALSE(changes.empty());
-  EXPECT_EQ(changes[0].reason, LevelReason::near);
+  ASSERT_GT(changes.size(), 1u);
+  EXPECT_EQ(changes[1].reason, LevelReason::near);
   EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0);
   EXPECT_LT(run.state().energy.balance_error(), 0.01);
   const Vec3 momentum = 40 * (body_momentum(setup.model, run.state(), 0).velocity +
@@ -313,12 +313,13 @@ TEST(ModelLevel, stays_what_it_is_while_others_than_frames_are_near) {
     topple::Setup setup = meets_a_frame(model);
     topple::Run run(setup);
     while (!run.over()) ASSERT_TRUE(run.advance().ok());
-    for (const BodyOutcome& body : run.outcome().bodies()) EXPECT_TRUE(body.level_changes.empty());
+    for (const BodyOutcome& body : run.outcome().bodies())
+      EXPECT_EQ(body.level_changes.size(), traits(model).lists_start ? 1u : 0u);
     EXPECT_GT(run.outcome().bodies()[1].peak_pinch, 0);
   }
 }
 
-// The 0.2 s of calm after which a frame comes down begin when the other body has left.
+// The 0.08 s of calm after which a frame comes down begin when the other body has left.
 TEST(ModelLevel, is_not_calm_while_a_frame_is_near) {
   topple::Setup setup;
   setup.model = steel_model();

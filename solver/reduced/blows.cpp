@@ -1,0 +1,60 @@
+// What is about to strike an elastic body, and how far that leads beyond its modes.
+#include <algorithm>
+#include <cmath>
+
+#include "solver/math/ranges.h"
+#include "solver/reduced/reduced_body.h"
+
+namespace topple {
+namespace {
+
+constexpr double k_blow = 4;  // error of stresses over the ratio of stiffnesses
+
+}  // namespace
+
+bool ReducedBody::lands_on_what_gives(double alpha) const {
+  const std::vector<int>& base = model_.bodies[body_].base_points;
+  bool any = false;
+  contacts_.each([&](const BodyContacts::Touch& touch, int k, int point, std::size_t) {
+    any = any ||
+          (alpha * touch.give[k] > contacts_.length(touch, k) && ranges::find(base, point) == base.end());
+  });
+  return any;
+}
+
+ReducedBody::Strikes ReducedBody::strikes_soon(const BodyState& s, double least) const {
+  const Body& body = model_.bodies[body_];
+  Strikes strikes;
+  const double fastest =
+      s.velocity.norm() + s.angular_velocity.norm() * reach_ + greatest_shape_ * s.rate.matrix().norm();
+  if (!(fastest > least)) return strikes;
+  for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
+    const int node = node_of(p) - body.first_node;
+    const auto shape = basis_->shape.middleRows<3>(6 * node);
+    const Vec3 bent = shape.lazyProduct(s.amplitude.head(basis_->modes).matrix()),
+               rate = shape.lazyProduct(s.rate.head(basis_->modes).matrix()),
+               arm = model_.node_position[node_of(p)] - body.centre_of_gravity + bent,
+               velocity = s.velocity + s.rotation * (s.angular_velocity.cross(arm) + rate);
+    for (const Plane& plane : model_.planes) {
+      const double nears = -plane.normal.dot(velocity);
+      if (!(nears > least)) continue;
+      const double gap =
+          plane.normal.dot(s.position + s.rotation * arm - plane.point) - model_.contact_points[p].width / 2;
+      if (!(gap < k_blow_ahead * nears)) continue;
+      const bool on_base = ranges::find(body.base_points, p) != body.base_points.end();
+      (on_base ? strikes.on_base : strikes.aside) = true;
+    }
+  }
+  return strikes;
+}
+
+double ReducedBody::least_blow(const ContactLaw& law, double gravity) const {
+  constexpr double k_small = 0.2;  // of the weight
+  return k_small * gravity / std::sqrt(contacts_.stiffness(law) / mass_);
+}
+
+double ReducedBody::blow_error(const ContactLaw& law, bool on_base) const {
+  return std::min(1.0, k_blow * contacts_.stiffness(law) * (on_base ? base_give_ : greatest_give_));
+}
+
+}  // namespace topple
