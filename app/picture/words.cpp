@@ -24,7 +24,7 @@ namespace {
 constexpr double k_upright = 0.1;      // degrees: less is standing
 constexpr double k_lying = 60;         // degrees
 constexpr double k_slid_least = 1e-3;  // m
-constexpr double k_surely_lying = 80;  // degrees: also of what slides about
+constexpr double k_surely_lying = 87;  // degrees: also of what slides about
 constexpr double k_fall = 0.5;         // m/s: what moves faster below that falls
 constexpr double k_at_rest = 0.01;     // m/s: what moves slower at large rests there
 constexpr std::size_t k_few_anchors = 4;

@@ -89,7 +89,8 @@ void add_cabinet(std::vector<Key>& keys) {
                "centre of gravity off the middle, along depth and width")
       .absent_means("[0, 0]; of an open front what its members give");
   rows.numbers("inertia", 3, D::inertia, "kg m^2", 1e-9, 1e7,
-               "thin sheets, a uniform block, or [Ixx, Iyy, Izz] about the centre of gravity")
+               "thin sheets or a uniform block about the middle, less m d^2 where the centre of gravity is d "
+               "from it, or [Ixx, Iyy, Izz] about that")
       .or_word(words_of(k_inertias))
       .absent(place_of(k_inertias, cabinet.inertia));
   add_placement(rows);

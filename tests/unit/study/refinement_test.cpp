@@ -97,7 +97,8 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_the_stress_of_what_stand
     for (const char* step : {"run.time_step=2 ms", "run.time_step=1 ms"}) {
       SCOPED_TRACE(std::string(alpha) + ", " + step);
       // the one before the wall knocks against it
-      expect_stated_stress(io::load_scene("paper-a", {step, alpha, "run.duration=4 s"}), 1, 16);
+      const char* const model = "cabinet.walled.model=elastic";  // blows on a frame take shorter steps
+      expect_stated_stress(io::load_scene("paper-a", {step, alpha, model, "run.duration=4 s"}), 1, 16);
     }
 }
 
