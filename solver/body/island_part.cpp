@@ -32,9 +32,8 @@ std::vector<int> indices(const std::vector<ModelBody>& bodies) {
 }  // namespace
 
 IslandPart::IslandPart(const Model& model, std::vector<ModelBody> bodies,
-                       std::span<const ElementPair> candidate_pairs, std::span<const BodyState> states,
-                       std::vector<SectionForces>& sections)
-    : ReducedPart(std::move(bodies), sections),
+                       std::span<const ElementPair> candidate_pairs, std::span<const BodyState> states)
+    : ReducedPart(std::move(bodies)),
       model_(model),
       coupling_(model, indices(bodies_), candidate_pairs, states),
       rigid_(bodies_, coupling_) {}

@@ -19,10 +19,9 @@ namespace topple {
 /// it, are advanced together, the others each alone.
 class IslandPart final : public ReducedPart {
  public:
-  /// The bodies, `model` and `sections`, of every element of the model, outlive this. `candidate_pairs` and
-  /// `states`: as MemberCoupling's.
+  /// The bodies and `model` outlive this. `candidate_pairs` and `states`: as MemberCoupling's.
   IslandPart(const Model& model, std::vector<ModelBody> bodies, std::span<const ElementPair> candidate_pairs,
-             std::span<const BodyState> states, std::vector<SectionForces>& sections);
+             std::span<const BodyState> states);
 
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
   BodyEnergy balance(const Parameters& parameters, const StepInputs& now, const std::vector<char>& marked,

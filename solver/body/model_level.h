@@ -19,8 +19,8 @@
 //   - planar: that and hard_floor_error() (planar_body.h)
 //   - elastic, theta being the rotation of a node relative to the body (sum over the modes): what theta^2/2
 //     shortens a body by, over its critical angle; for stresses theta/2, the mean angle by which forces turn,
-//     and before and while it strikes something what a blow raises beyond its modes, if that is more
-//     (ReducedBody::blow_error)
+//     and before and while it strikes something what a blow that may make a new peak raises beyond its modes,
+//     if that is more (ReducedBody::blow_error)
 // A trajectory that comes near the critical angle, or bounces often, can enlarge them.
 // It comes down to its base level when no such frame is near, no hinge ever formed in it, it does not fall,
 // and for k_calm_for sqrt(f + 1) < k_calm_yield, at both ends of which its strain energy but for that of
@@ -29,10 +29,10 @@
 //
 // Up from a planar block: it sinks into the springs of its contacts so far that they bear what the floor
 // bore. Up: nodes are placed where the modes, and what loads add to them statically, put them, and moved
-// rigidly to where contacts bear what they bore. Down: the rigid motion that has the nodes' momentum, at
-// their best fit, and the amplitudes of the modes in what is left. Linear momentum stays to rounding, angular
-// momentum to the square of the deformation over the body's size; the change of energy is booked as
-// EnergyLedger::model_switch.
+// rigidly to where contacts bear what they bore; friction bears that too. Down: the rigid motion that has the
+// nodes' momentum, at their best fit, and the amplitudes of the modes in what is left. Linear momentum stays
+// to rounding, angular momentum to the square of the deformation over the body's size; the change of energy
+// is booked as EnergyLedger::model_switch.
 #pragma once
 
 #include <span>

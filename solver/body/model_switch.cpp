@@ -48,13 +48,6 @@ double negligible(const Body& body, const Parameters& parameters, const State& s
   return k_negligible * std::min(body.mass * parameters.gravity.norm() * body.reach, state.energy.largest);
 }
 
-// m/s: slower, a blow is not looked at.
-double least_blow(const Body& body, const Parameters& parameters, const State& state,
-                  const ReducedBody& elastic) {
-  return std::max(elastic.least_blow(parameters.contact, parameters.gravity.norm()),
-                  std::sqrt(2 * negligible(body, parameters, state) / body.mass));
-}
-
 // A rigid body's motion, floor's frame.
 struct Motion {
   BodyPose pose;
@@ -76,11 +69,10 @@ Eigen::AlignedBox3d box_of(const Model& model, const Body& body) {
   return box;
 }
 
-// Whether points of b reach the box around those of a within k_blow_ahead at more than `least`, m/s, or move
-// so in it.
-bool meets(const Model& model, const Body& a, const Motion& of_a, const Body& b, const Motion& of_b,
-           double least) {
+// How fast, m/s, points of b reach the box around those of a within k_blow_ahead, or move so in it; 0: none.
+double meets(const Model& model, const Body& a, const Motion& of_a, const Body& b, const Motion& of_b) {
   const Eigen::AlignedBox3d box = box_of(model, a);
+  double fastest = 0;
   for (int p = b.first_contact_point; p < b.first_contact_point + b.contact_point_count; ++p) {
     const ContactPoint& point = model.contact_points[p];
     const Vec3 arm = of_b.pose.rotation * (model.node_position[point.node] - b.centre_of_gravity),
@@ -91,9 +83,9 @@ bool meets(const Model& model, const Body& a, const Motion& of_a, const Body& b,
                gaps = at.cwiseAbs() - box.sizes() / 2 - Vec3::Constant(point.width);
     int side;
     const double gap = gaps.maxCoeff(&side), nears = at[side] > 0 ? -moves[side] : moves[side];
-    if (nears > least && gap < k_blow_ahead * nears) return true;
+    if (gap < k_blow_ahead * nears) fastest = std::max(fastest, nears);
   }
-  return false;
+  return fastest;
 }
 
 double strain_energy(const Model& model, int b, const std::vector<SectionForces>& sections) {
@@ -162,25 +154,24 @@ void ModelSwitch::find_near(const std::vector<Island>& islands) {
       }
 }
 
-// Which bodies whose stresses are asked for will soon be struck by another one.
+// How fast bodies whose stresses are asked for will soon be struck by another one.
 void ModelSwitch::find_meetings(const std::vector<Island>& islands, const Switching& on) {
   const auto& [model, parameters, now, end, state, parts] = on;
-  meets_.assign(base_.size(), false);
+  meets_.assign(base_.size(), 0);
   if (!parameters.want_stress) return;
   for (const Island& island : islands) {
     std::array<int, 2> last{-1, -1};  // pairs of elements of two bodies stand together
     for (const ElementPair& pair : island.candidate_pairs) {
       const std::array<int, 2> two{body_of(model, pair.a), body_of(model, pair.b)};
-      if (two == last || (meets_[two[0]] && meets_[two[1]])) continue;
+      if (two == last) continue;
       last = two;
       const std::array<Motion, 2> motions{motion_of(model, state, two[0]), motion_of(model, state, two[1])};
       for (const int k : {0, 1}) {
         const int b = two[k], other = two[1 - k];
-        if (base_[b].level != ModelLevel::elastic || meets_[b]) continue;
+        if (base_[b].level != ModelLevel::elastic) continue;
         const Body &own = model.bodies[b], &its = model.bodies[other];
-        const double least = least_blow(own, parameters, state, parts.reduced(state, b));
-        meets_[b] = meets(model, own, motions[k], its, motions[1 - k], least) ||
-                    meets(model, its, motions[1 - k], own, motions[k], least);
+        meets_[b] = std::max({meets_[b], meets(model, own, motions[k], its, motions[1 - k]),
+                              meets(model, its, motions[1 - k], own, motions[k])});
       }
     }
   }
@@ -194,13 +185,13 @@ double ModelSwitch::error_estimate(const Model& model, const Parameters& paramet
   if (traits(s.level).moves_nodes) return 0;
   if (traits(s.level).has_block) return rigid_error_[b] + parts.planar(b).hard_floor_error(parameters, state);
   if (!traits(s.level).has_modes) return rigid_error_[b];
-  return elastic_estimate(model, parameters, state, s, parts.reduced(state, b), b).error;
+  return elastic_estimate(model, parameters, s, parts.reduced(state, b), b).error;
 }
 
 // Of a body, as elastic at `s`, where its contacts were found last.
 ModelSwitch::Estimate ModelSwitch::elastic_estimate(const Model& model, const Parameters& parameters,
-                                                    const State& state, const BodyState& s,
-                                                    const ReducedBody& elastic, int b) const {
+                                                    const BodyState& s, const ReducedBody& elastic,
+                                                    int b) const {
   const Body& body = model.bodies[b];
   if (elastic.lands_on_what_gives(parameters.contact.alpha))
     return {std::numeric_limits<double>::infinity(), LevelReason::fall};
@@ -208,9 +199,14 @@ ModelSwitch::Estimate ModelSwitch::elastic_estimate(const Model& model, const Pa
   if (!parameters.want_stress) return bends;
   double blow = elastic.blow_error(parameters.contact, false);
   if (blow > parameters.accuracy) {  // else it is allowed whatever strikes
-    const auto [on_base, aside] = elastic.strikes_soon(s, least_blow(body, parameters, state, elastic));
-    if (!on_base && !aside && !meets_[b]) return bends;
-    if (!aside && !meets_[b]) blow = elastic.blow_error(parameters.contact, true);
+    const auto error = [&](double speed, bool on_base) {
+      return elastic.blow_error(parameters.contact, s, speed, on_base);
+    };
+    blow = error(std::max(elastic.speed_bound(s), meets_[b]), false);
+    if (blow > 0) {
+      const auto [on_base, aside] = elastic.strikes_soon(s);
+      blow = std::max(error(on_base, true), error(std::max(aside, meets_[b]), false));
+    }
   }
   return blow > bends.error ? Estimate{blow, LevelReason::blow} : bends;
 }
@@ -242,7 +238,7 @@ bool ModelSwitch::may_descend_to(const Switching& on, ModelLevel level, int b, d
   elastic.find_contacts(on.now, s, on.state.stick);
   const double allowed = on.parameters.models[b] == BodyModel::automatic ? k_soon * on.parameters.accuracy
                                                                          : std::numeric_limits<double>::max();
-  return elastic_estimate(on.model, on.parameters, on.state, s, elastic, b).error <= allowed;
+  return elastic_estimate(on.model, on.parameters, s, elastic, b).error <= allowed;
 }
 
 // At the state of `on`, where the contacts of those that are not frames have been found.
@@ -270,8 +266,7 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
   }
   const bool automatic = parameters.models[b] == BodyModel::automatic;
   if (automatic && s.level == ModelLevel::elastic && s.error_estimate > parameters.accuracy)
-    return {ModelLevel::frame,
-            elastic_estimate(model, parameters, state, s, parts.reduced(state, b), b).reason};
+    return {ModelLevel::frame, elastic_estimate(model, parameters, s, parts.reduced(state, b), b).reason};
   // before the blow: an elastic body has a spring of its own at each contact point, a frame has not, and to
   // change within the blow would put energy into it
   if (automatic && s.level == ModelLevel::elastic && near_yield_[b] &&
@@ -295,6 +290,7 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   State& state = on.state;
   BodyState& s = state.bodies[b];
   const double height = body_pose(model, state, b).centre.dot(on.parameters.gravity);
+  if (traits(s.level).has_modes) on.parts.reduced(state, b).scale_sticks_to_frame(state.stick);
   if (traits(s.level).has_block) {
     on.parts.planar(b).sink(on.parameters, on.now, state);
     s.level = ModelLevel::rigid;
@@ -311,6 +307,10 @@ void ModelSwitch::change(const Switching& on, LevelChoice choice, int b) {
   }
   s.level = choice.level;
   s.reason = choice.reason;
+  if (traits(s.level).has_modes) {
+    on.parts.reduced(state, b).find_contacts(on.now, s, state.stick);
+    on.parts.reduced(state, b).scale_sticks_from_frame(state.stick);
+  }
   if (!traits(s.level).has_stresses) on.parts.clear_sections(b);
   s.calm_since = -1;
   s.error_estimate = error_estimate(model, on.parameters, state, on.parts, b);

@@ -42,8 +42,8 @@ class ModelSwitch {
   void find_base(const Model& model, const Parameters& parameters);
   LevelChoice choose(const Switching& on, int body);
   LevelChoice choose_of_block(const Switching& on, int body);
-  Estimate elastic_estimate(const Model& model, const Parameters& parameters, const State& state,
-                            const BodyState& s, const ReducedBody& elastic, int body) const;
+  Estimate elastic_estimate(const Model& model, const Parameters& parameters, const BodyState& s,
+                            const ReducedBody& elastic, int body) const;
   bool may_descend_to(const Switching& on, ModelLevel level, int body, double strain) const;
   void begin_block(const Switching& on, int body);
   void find_near(const std::vector<Island>& islands);
@@ -59,7 +59,7 @@ class ModelSwitch {
   std::vector<char> changed_;        // per body: its level, since the last step
   std::vector<char> near_;           // per body: another may touch it
   std::vector<char> near_yield_;     // per body: likewise, and one of those that may is watched_
-  std::vector<char> meets_;          // per body: of which stresses are asked for, and another soon strikes it
+  std::vector<double> meets_;        // per body: m/s, at which another soon strikes it; 0: none does
 };
 
 }  // namespace topple

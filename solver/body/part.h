@@ -64,7 +64,7 @@ class Part {
   virtual double explicit_reach(const Parameters&) { return std::numeric_limits<double>::infinity(); }
   /// Finds what acts on its rigid and elastic bodies at `state`; with_members: between members too.
   virtual void find_forces(const StepInputs&, const State&, [[maybe_unused]] bool with_members) {}
-  /// Appends its contact forces at `state`. Of rigid and elastic bodies it finds the section forces too.
+  /// Appends its contact forces at `state`.
   virtual void list_forces(const Parameters& parameters, const StepInputs& now, const State& state,
                            Forces& forces) = 0;
   /// Of those that list_forces found last, or `hardest` where none of its own is greater.

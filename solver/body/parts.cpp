@@ -80,7 +80,7 @@ void Parts::arrange(const State& state) {
   std::vector<BodySystem*> systems;
   std::vector<Coupled> coupled;
   const auto close_part = [&] {
-    if (!some.empty()) parts_.push_back(std::make_shared<ReducedPart>(std::exchange(some, {}), sections));
+    if (!some.empty()) parts_.push_back(std::make_shared<ReducedPart>(std::exchange(some, {})));
     if (!blocks.empty()) parts_.push_back(std::make_shared<PlanarPart>(std::exchange(blocks, {})));
   };
   const auto couple = [&](const Island& island) {
@@ -91,9 +91,9 @@ void Parts::arrange(const State& state) {
     if (same != coupled_.end()) return *same;
     std::vector<ModelBody> bodies;
     for (const int b : island.bodies) bodies.push_back({b, &reduced(state, b)});
-    return Coupled{island, std::move(own),
-                   std::make_shared<IslandPart>(model_, std::move(bodies), island.candidate_pairs,
-                                                state.bodies, sections)};
+    return Coupled{
+        island, std::move(own),
+        std::make_shared<IslandPart>(model_, std::move(bodies), island.candidate_pairs, state.bodies)};
   };
   with_frames_.assign(levels_.size(), false);
   sticks_of_.assign(levels_.size(), nullptr);
@@ -125,6 +125,10 @@ void Parts::arrange(const State& state) {
   islands_.keep(systems);
   for (BodySystem* system : systems) parts_.push_back(std::make_shared<FramePart>(*system, sections));
   moves_nodes_ = !systems.empty();
+}
+
+void Parts::find_sections(const State& state, int body) {
+  reduced(state, body).section_forces(state.bodies[body], sections);
 }
 
 void Parts::clear_sections(int body) {

@@ -71,9 +71,11 @@ class Parts {
   /// Before other parameters are given.
   void forget_parameters();
 
-  /// Per element of the model, as the newest step or balance left them; of elastic bodies as
-  /// Part::list_forces found them last; zero of bodies without stresses.
+  /// Per element of the model, as the newest step or balance left them; of elastic bodies as find_sections()
+  /// did; zero of bodies without stresses.
   std::vector<SectionForces> sections;
+  /// Those of an elastic body at `state`, under the forces that were found last.
+  void find_sections(const State& state, int body);
   /// Sets those of a body to zero: it has no stresses from here on.
   void clear_sections(int body);
 

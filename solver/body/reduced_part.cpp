@@ -79,10 +79,7 @@ void ReducedPart::find_forces(const StepInputs& now, const State& state, bool) {
 
 void ReducedPart::list_forces(const Parameters&, const StepInputs& now, const State& state, Forces& forces) {
   find_forces(now, state, true);
-  for (const auto& [index, body] : bodies_) {
-    if (traits(state.bodies[index].level).has_stresses) body->section_forces(state.bodies[index], sections_);
-    body->list_contacts(forces.contacts);
-  }
+  for (const auto& [index, body] : bodies_) body->list_contacts(forces.contacts);
 }
 
 HardestContact ReducedPart::hardest_contact(const HardestContact& hardest) {

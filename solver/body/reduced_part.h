@@ -11,9 +11,8 @@ namespace topple {
 /// Bodies that ReducedBody advances one after the other.
 class ReducedPart : public Part {
  public:
-  /// The bodies and `sections`, of every element of the model, outlive this.
-  ReducedPart(std::vector<ModelBody> bodies, std::vector<SectionForces>& sections)
-      : bodies_(std::move(bodies)), sections_(sections) {}
+  /// The bodies outlive this.
+  explicit ReducedPart(std::vector<ModelBody> bodies) : bodies_(std::move(bodies)) {}
 
   bool has(const std::vector<char>& marked) const override;
   StepStatus settle(const Parameters& parameters, State& state, PartScratch& scratch) override;
@@ -29,7 +28,6 @@ class ReducedPart : public Part {
 
  protected:
   const std::vector<ModelBody> bodies_;
-  std::vector<SectionForces>& sections_;
 };
 
 }  // namespace topple

@@ -22,12 +22,9 @@ bool ReducedBody::lands_on_what_gives(double alpha) const {
   return any;
 }
 
-ReducedBody::Strikes ReducedBody::strikes_soon(const BodyState& s, double least) const {
+ReducedBody::Strikes ReducedBody::strikes_soon(const BodyState& s) const {
   const Body& body = model_.bodies[body_];
   Strikes strikes;
-  const double fastest =
-      s.velocity.norm() + s.angular_velocity.norm() * reach_ + greatest_shape_ * s.rate.matrix().norm();
-  if (!(fastest > least)) return strikes;
   for (int p = body.first_contact_point; p < body.first_contact_point + body.contact_point_count; ++p) {
     const int node = node_of(p) - body.first_node;
     const auto shape = basis_->shape.middleRows<3>(6 * node);
@@ -37,24 +34,50 @@ ReducedBody::Strikes ReducedBody::strikes_soon(const BodyState& s, double least)
                velocity = s.velocity + s.rotation * (s.angular_velocity.cross(arm) + rate);
     for (const Plane& plane : model_.planes) {
       const double nears = -plane.normal.dot(velocity);
-      if (!(nears > least)) continue;
+      if (!(nears > 0)) continue;
       const double gap =
           plane.normal.dot(s.position + s.rotation * arm - plane.point) - model_.contact_points[p].width / 2;
-      if (!(gap < k_blow_ahead * nears)) continue;
+      if (!(std::abs(gap) < k_blow_ahead * nears)) continue;  // nor does it press for longer already
       const bool on_base = ranges::find(body.base_points, p) != body.base_points.end();
-      (on_base ? strikes.on_base : strikes.aside) = true;
+      double& fastest = on_base ? strikes.on_base : strikes.aside;
+      fastest = std::max(fastest, nears);
     }
   }
   return strikes;
 }
 
-double ReducedBody::least_blow(const ContactLaw& law, double gravity) const {
-  constexpr double k_small = 0.2;  // of the weight
-  return k_small * gravity / std::sqrt(contacts_.stiffness(law) / mass_);
+double ReducedBody::speed_bound(const BodyState& s) const {
+  return s.velocity.norm() + s.angular_velocity.norm() * reach_ + greatest_shape_ * s.rate.matrix().norm();
 }
 
 double ReducedBody::blow_error(const ContactLaw& law, bool on_base) const {
   return std::min(1.0, k_blow * contacts_.stiffness(law) * (on_base ? base_give_ : greatest_give_));
+}
+
+double ReducedBody::blow_error(const ContactLaw& law, const BodyState& s, double speed, bool on_base) const {
+  constexpr double k_rings = 2;  // what a sudden force raises over what it does at rest, at most
+  const double raises =
+      speed * std::sqrt(contacts_.stiffness(law) * mass_) * (on_base ? base_stress_ : greatest_stress_);
+  if (!(raises > 0)) return 0;
+  const double now = stress_bound(s);
+  if (k_rings * raises + now < s.peak_stress) return 0;
+  return blow_error(law, on_base) * std::min(1.0, raises / std::max(s.peak_stress, now));
+}
+
+// Of the series of both springs' stiffness over that of the one of the contact.
+template <class F>
+void ReducedBody::each_stick(F f) const {
+  contacts_.each([&](const BodyContacts::Touch& touch, int k, int, std::size_t stick) {
+    f(stick, 1 - touch.give_across[k] * touch.stick_stiffness[k]);
+  });
+}
+
+void ReducedBody::scale_sticks_to_frame(std::span<Vec3> stick) const {
+  each_stick([&](std::size_t k, double share) { stick[k] *= share; });
+}
+
+void ReducedBody::scale_sticks_from_frame(std::span<Vec3> stick) const {
+  each_stick([&](std::size_t k, double share) { stick[k] /= share; });
 }
 
 }  // namespace topple

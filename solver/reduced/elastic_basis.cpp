@@ -43,18 +43,16 @@ MatrixXd recover(const Model& model, const Body& body, const MatrixXd& u) {
   return out;
 }
 
-// Per column, the greatest sqrt(f + 1) at an end of an element.
-VectorXd greatest_yield(const Model& model, const Body& body, const MatrixXd& sections) {
+// Per column, the greatest f(element, section forces) at an end of an element.
+template <class F>
+VectorXd greatest_at_ends(const Model& model, const Body& body, const MatrixXd& sections, F f) {
   VectorXd out = VectorXd::Zero(sections.cols());
   for (int c = 0; c < sections.cols(); ++c)
     for (int e = 0; e < body.element_count; ++e) {
       const Element& element = model.elements[body.first_element + e];
-      if (!std::isfinite(element.capacity[0])) continue;
       const SectionForces forces{sections.block<3, 1>(6 * e, c), sections.block<3, 1>(6 * e + 3, c)};
-      for (const int end : {-1, 1}) {
-        const SectionForces there = forces_along(forces, element.length, element.s, end);
-        out[c] = std::max(out[c], std::sqrt(yield_function(element, there) + 1));
-      }
+      for (const int end : {-1, 1})
+        out[c] = std::max(out[c], f(element, forces_along(forces, element.length, element.s, end)));
     }
   return out;
 }
@@ -129,8 +127,22 @@ bool same_body(const Model& model, const Body& a, const Body& b) {
 void complete(const Model& model, const Body& body, ElasticBasis& basis) {
   basis.section = recover(model, body, basis.shape);
   basis.residual_section = recover(model, body, basis.residual_shape);
-  basis.mode_yield = greatest_yield(model, body, basis.section);
-  basis.residual_yield = greatest_yield(model, body, basis.residual_section);
+  const auto yield = [](const Element& element, const SectionForces& forces) {
+    return std::isfinite(element.capacity[0]) ? std::sqrt(yield_function(element, forces) + 1) : 0;
+  };
+  const auto stress = [&](const Element& element, const SectionForces& forces) {
+    return equivalent_stress(model.sections[model.members[element.member].section], forces);
+  };
+  basis.mode_yield = greatest_at_ends(model, body, basis.section, yield);
+  basis.residual_yield = greatest_at_ends(model, body, basis.residual_section, yield);
+  basis.mode_stress = greatest_at_ends(model, body, basis.section, stress);
+  basis.residual_stress = greatest_at_ends(model, body, basis.residual_section, stress);
+  MatrixXd at_rest = basis.residual_section;
+  const VectorXd soft = basis.frequency.head(basis.modes).square().inverse();
+  for (int i = 0; i < body.node_count; ++i)
+    at_rest.middleCols<3>(3 * i) +=
+        basis.section * soft.asDiagonal() * basis.shape.middleRows<3>(6 * i).transpose();
+  basis.rest_stress = greatest_at_ends(model, body, at_rest, stress);
   basis.mode_rotation = VectorXd::Zero(basis.modes);
   for (int k = 0; k < basis.modes; ++k)
     for (int i = 0; i < body.node_count; ++i)

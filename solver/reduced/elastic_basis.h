@@ -21,6 +21,9 @@ struct ElasticBasis {
                                      ///< free modes, whatever took the place of some (with_attachments)
   Eigen::VectorXd mode_yield;        ///< modes: greatest sqrt(f + 1) at ends of elements per amplitude
   Eigen::VectorXd residual_yield;    ///< 3 nodes: likewise per newton
+  Eigen::VectorXd mode_stress;       ///< modes: greatest equivalent_stress there per amplitude, Pa
+  Eigen::VectorXd residual_stress;   ///< 3 nodes: likewise per newton
+  Eigen::VectorXd rest_stress;       ///< 3 nodes: likewise, of the free body under that force alone at rest
   Eigen::VectorXd mode_rotation;     ///< modes: greatest rotation of a node per amplitude, rad
 };
 

@@ -59,11 +59,13 @@ ReducedBody::ReducedBody(const Model& model, int body)
   const Body& own = model.bodies[body];
   for (int p = own.first_contact_point; p < own.first_contact_point + own.contact_point_count; ++p) {
     const int node = node_of(p) - own.first_node;
-    const Vec3 give = basis_->give.segment<3>(3 * node);
+    const Vec3 give = basis_->give.segment<3>(3 * node), stress = basis_->rest_stress.segment<3>(3 * node);
     greatest_shape_ = std::max(greatest_shape_, basis_->shape.middleRows<3>(6 * node).norm());
     greatest_give_ = std::max(greatest_give_, give.maxCoeff());
-    if (ranges::find(own.base_points, p) != own.base_points.end())
-      base_give_ = std::max(base_give_, give.z());
+    greatest_stress_ = std::max(greatest_stress_, stress.maxCoeff());
+    if (ranges::find(own.base_points, p) == own.base_points.end()) continue;
+    base_give_ = std::max(base_give_, give.z());
+    base_stress_ = std::max(base_stress_, stress.z());
   }
 }
 
@@ -538,12 +540,20 @@ void ReducedBody::add_residual(const BodyState& s, State& state) const {
   }
 }
 
-double ReducedBody::yield_bound(const BodyState& s) const {
-  double bound = basis_->mode_yield.dot(s.amplitude.head(basis_->modes).abs().matrix());
-  each_force(s, [&](int node, const Vec3& f) {
-    bound += basis_->residual_yield.segment<3>(3 * node).dot(f.cwiseAbs());
-  });
+// Of a norm of section forces: by its triangle inequality.
+double ReducedBody::bound(const BodyState& s, const Eigen::VectorXd& of_modes,
+                          const Eigen::VectorXd& of_forces) const {
+  double bound = of_modes.dot(s.amplitude.head(basis_->modes).abs().matrix());
+  each_force(s, [&](int node, const Vec3& f) { bound += of_forces.segment<3>(3 * node).dot(f.cwiseAbs()); });
   return bound;
+}
+
+double ReducedBody::yield_bound(const BodyState& s) const {
+  return bound(s, basis_->mode_yield, basis_->residual_yield);
+}
+
+double ReducedBody::stress_bound(const BodyState& s) const {
+  return bound(s, basis_->mode_stress, basis_->residual_stress);
 }
 
 double ReducedBody::rotation_bound(const BodyState& s) const {

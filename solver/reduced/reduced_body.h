@@ -125,21 +125,29 @@ class ReducedBody {
   /// softer than itself. `alpha`: N, of Eq. 2. Where a whole side lands, its points are pressed in together,
   /// less than each would be alone: the local springs are then far too soft.
   bool lands_on_what_gives(double alpha) const;
-  /// Whether points of it meet a plane within k_blow_ahead, or press on one, at more than `least`, m/s: those
-  /// of its base, others.
+  /// Fastest of its points, m/s, that meet a plane within k_blow_ahead, or met it as shortly before: of its
+  /// base, of the others; 0: none does.
   struct Strikes {
-    bool on_base = false, aside = false;
+    double on_base = 0, aside = 0;
   };
-  Strikes strikes_soon(const BodyState& s, double least) const;
-  /// m/s, at which it would strike a contact of `law` with a fifth of its weight (`gravity`: m/s^2): v sqrt(k
-  /// m).
-  double least_blow(const ContactLaw& law, double gravity) const;
+  Strikes strikes_soon(const BodyState& s) const;
+  /// Upper bound of the speeds of its points, m/s.
+  double speed_bound(const BodyState& s) const;
   /// Estimated error of the stresses that a blow raises, on its base from below or, not `on_base`, anywhere,
   /// as a share of them: four times the greatest ratio of a contact's stiffness to that of the point which
   /// the modes leave out, at most 1. Measured (assets/guide/models.md).
   double blow_error(const ContactLaw& law, bool on_base) const;
-  /// Upper bound of sqrt(f + 1) (plasticity.h) over all sections.
+  /// The same of a blow at `speed`, m/s, as a share of the greatest stress so far: what it raises is that at
+  /// rest under its force v sqrt(k m). 0 where twice as much beside the present stresses makes no new peak.
+  double blow_error(const ContactLaw& law, const BodyState& s, double speed, bool on_base) const;
+  /// Tangential springs `stick` of the contacts found last have travelled with the local springs behind them
+  /// (body_contacts.h), which a frame has not: to those of a frame that bear the same, and back.
+  void scale_sticks_to_frame(std::span<Vec3> stick) const;
+  void scale_sticks_from_frame(std::span<Vec3> stick) const;
+  /// Upper bounds over all sections under the forces found last: of sqrt(f + 1) (plasticity.h), of
+  /// equivalent_stress, Pa.
   double yield_bound(const BodyState& s) const;
+  double stress_bound(const BodyState& s) const;
   /// Upper bound of the rotation of a node relative to the body by the modes, rad.
   double rotation_bound(const BodyState& s) const;
 
@@ -170,6 +178,9 @@ class ReducedBody {
   bool is_quiet(const Parameters& parameters, const BodyState& s) const;
   template <class F>
   void each_force(const BodyState& s, F f) const;
+  template <class F>
+  void each_stick(F f) const;
+  double bound(const BodyState& s, const Eigen::VectorXd& of_modes, const Eigen::VectorXd& of_forces) const;
   void add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u) const;
 
   Solution solve_velocity(const Parameters& parameters, const ContactImpulse& impulse, BodyVelocity& u,
@@ -203,7 +214,8 @@ class ReducedBody {
   const double mass_, reach_, least_inertia_;
   const PackMat3 inertia_, inverse_inertia_;  // material axes
   double base_give_ = 0, greatest_give_ = 0;  // m/N, ElasticBasis::give of points of the base along z, of all
-  double greatest_shape_ = 0;                 // 1/sqrt(kg), norm of the displacements of a point in all modes
+  double base_stress_ = 0, greatest_stress_ = 0;  // Pa/N, ElasticBasis::rest_stress, likewise
+  double greatest_shape_ = 0;  // 1/sqrt(kg), norm of the displacements of a point in all modes
   std::shared_ptr<const ElasticBasis> basis_;
   BodyContacts contacts_;
   BodyAnchors anchors_;

@@ -423,7 +423,7 @@ void Outcome::observe_sides(const Model& model, const State& state, double weigh
 
 void Outcome::observe(const Model& model, const Parameters& parameters, const State& state,
                       const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
-                      const std::vector<SectionForces>& sections, std::vector<Event>& events) {
+                      std::vector<Event>& events) {
   const bool goes_on = state.step > 0 && !bodies_.empty() && !bodies_.front().level;  // from a checkpoint
   observe_forces(model, forces, between);
   find_poses(model, state);
@@ -433,7 +433,7 @@ void Outcome::observe(const Model& model, const Parameters& parameters, const St
     observe_sides(model, state, model.bodies[b].mass * parameters.gravity.norm(), b, events);
   }
   ends_known_ = false;
-  observe_sections(model, state, sections, goes_on, events);
+  observe_hinges(model, state, goes_on, events);
   observe_anchors(model, state, events);
 }
 
@@ -460,47 +460,32 @@ void Outcome::observe_anchors(const Model& model, const State& state, std::vecto
   }
 }
 
-namespace {
-
-// f(body) of those that have stresses now.
-template <class F>
-void each_stressed_body(const Model& model, const State& state, F f) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b)
-    if (traits(state.bodies[b].level).has_stresses) f(static_cast<int>(b));
-}
-
-}  // namespace
-
-void Outcome::observe_stresses(const Model& model, const State& state,
-                               const std::vector<SectionForces>& sections) {
-  each_stressed_body(model, state, [&](int b) {
-    const Body& body = model.bodies[b];
-    BodyOutcome& o = bodies_[b];
-    double greatest = 0;  // squared
-    for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
-      const Element& element = model.elements[e];
-      const Eigen::Vector4d& stress = unit_stress_[model.members[element.member].section];
-      const bool yields = std::isfinite(element.capacity[0]);
-      for (const int end : {-1, 1}) {
-        const SectionForces forces = forces_along(sections[e], element.length, element.s, end);
-        const double normal = std::abs(forces.normal.x()) * stress[0] +
-                              std::abs(forces.moment.y()) * stress[2] +
-                              std::abs(forces.moment.z()) * stress[3];
-        const double shear = forces.moment.x() * stress[1];
-        greatest = std::max(greatest, normal * normal + shear * shear);
-        if (!yields) continue;
-        o.peak_yield_ratio =
-            std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
-      }
+double Outcome::observe_stresses(const Model& model, int index, const std::vector<SectionForces>& sections) {
+  const Body& body = model.bodies[index];
+  BodyOutcome& o = bodies_[index];
+  double greatest = 0;  // squared
+  for (int e = body.first_element; e < body.first_element + body.element_count; ++e) {
+    const Element& element = model.elements[e];
+    const Eigen::Vector4d& stress = unit_stress_[model.members[element.member].section];
+    const bool yields = std::isfinite(element.capacity[0]);
+    for (const int end : {-1, 1}) {
+      const SectionForces forces = forces_along(sections[e], element.length, element.s, end);
+      const double normal = std::abs(forces.normal.x()) * stress[0] +
+                            std::abs(forces.moment.y()) * stress[2] + std::abs(forces.moment.z()) * stress[3];
+      const double shear = forces.moment.x() * stress[1];
+      greatest = std::max(greatest, normal * normal + shear * shear);
+      if (!yields) continue;
+      o.peak_yield_ratio =
+          std::max(o.peak_yield_ratio.value_or(0), std::sqrt(yield_function(element, forces) + 1));
     }
-    if (greatest > o.peak_stress * o.peak_stress) o.peak_stress = std::sqrt(greatest);
-  });
+  }
+  greatest = std::sqrt(greatest);
+  o.peak_stress = std::max(o.peak_stress, greatest);
+  return greatest;
 }
 
-void Outcome::observe_sections(const Model& model, const State& state,
-                               const std::vector<SectionForces>& sections, bool goes_on,
-                               std::vector<Event>& events) {
-  observe_stresses(model, state, sections);
+void Outcome::observe_hinges(const Model& model, const State& state, bool goes_on,
+                             std::vector<Event>& events) {
   const auto look = [&](int e, int body) {
     const Element& element = model.elements[e];
     const ElementState& now = state.elements[e];
@@ -528,10 +513,11 @@ void Outcome::observe_sections(const Model& model, const State& state,
                                   : Hinge::second,
              o.hinges);
   };
-  each_stressed_body(model, state, [&](int b) {
+  for (int b = 0; b < static_cast<int>(model.bodies.size()); ++b) {
     const Body& body = model.bodies[b];
+    if (!traits(state.bodies[b].level).moves_nodes) continue;
     for (int e = body.first_element; e < body.first_element + body.element_count; ++e) look(e, b);
-  });
+  }
 }
 
 bool Outcome::all_overturned(double time) const {

@@ -143,10 +143,11 @@ class Outcome {
   /// Takes in one accepted step. `forces`, `between`: contact forces of that state. Appends to `events`.
   void observe(const Model& model, const Parameters& parameters, const State& state,
                const std::vector<ContactForce>& forces, const std::vector<MemberForce>& between,
-               const std::vector<SectionForces>& sections, std::vector<Event>& events);
-  /// Takes in stresses at a time within the step that is observed next: they may be greater there than at its
-  /// ends, and no recorded row is to hold more than the peaks.
-  void observe_stresses(const Model& model, const State& state, const std::vector<SectionForces>& sections);
+               std::vector<Event>& events);
+  /// Takes in the stresses of a body and returns the greatest, Pa; also at times within the step that is
+  /// observed next: they may be greater there than at its ends, and no recorded row is to hold more than the
+  /// peaks.
+  double observe_stresses(const Model& model, int body, const std::vector<SectionForces>& sections);
   /// Takes in the greatest tilts and slides within the step from the last observation to `end`; `within`
   /// gives the state at a time there.
   void observe_peaks(const Model& model, const State& end,
@@ -179,9 +180,7 @@ class Outcome {
   void observe_sides(const Model& model, const State& state, double weight, std::size_t b,
                      std::vector<Event>& events);
   /// goes_on: this is the first observation of a run that goes on from a checkpoint.
-  void observe_sections(const Model& model, const State& state, const std::vector<SectionForces>& sections,
-                        bool goes_on, std::vector<Event>& events);
-
+  void observe_hinges(const Model& model, const State& state, bool goes_on, std::vector<Event>& events);
   void observe_anchors(const Model& model, const State& state, std::vector<Event>& events);
 
   std::vector<BodyOutcome> bodies_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/body/model_level.h"
 #include "solver/body/step_control.h"
@@ -73,7 +74,7 @@ Run::Run(const Setup& setup, RunPoint point)
   if (!status_.ok()) return;
   if (is_static()) path_.emplace(setup.model, setup.run.statics);
   resume(setup.model, now_.state, workspace_);
-  find_acting(now_.state, contact_forces(setup.model, now_.parameters, now_.state, workspace_), now_acting_);
+  find_acting(contact_forces(setup.model, now_.parameters, now_.state, workspace_), now_acting_);
 }
 
 const RunPoint& Run::point() const {
@@ -97,6 +98,8 @@ StepStatus Run::advance() {
     observe_stresses_since(start);
     observe_peaks();
     observe(contact_forces_after_step(now_.state, workspace_));
+  } else {
+    contact_forces(setup_->model, now_.parameters, now_.state, workspace_);  // not those of what was tried
   }
   return status_;
 }
@@ -141,15 +144,31 @@ std::optional<double> Run::stable_step() {
   return limit && std::isfinite(share) ? std::optional(share * *limit) : std::nullopt;
 }
 
-void Run::find_acting(const State& state, const std::vector<ContactForce>& contacts, Acting& acting) const {
+void Run::find_acting(const std::vector<ContactForce>& contacts, Acting& acting) const {
   acting.contacts.reserve(setup_->model.contact_points.size() * setup_->model.planes.size());
   acting.contacts = contacts;
   acting.between_members = member_forces(workspace_);
-  const auto has_stresses = [](const BodyState& body) { return traits(body.level).has_stresses; };
-  const bool stressed = path_ || ranges::any_of(state.bodies, has_stresses);
-  if (stressed || acting.stressed) acting.sections = section_forces(workspace_);  // of a room, they are many
-  acting.stressed = stressed;
-  if (path_) path_->add_weight(now_.parameters, state, acting.sections);
+  acting.sections_found = false;
+}
+
+Snapshot Run::view(const State& state, Acting& acting) const {
+  if (!std::exchange(acting.sections_found, true)) {
+    bool stressed = path_.has_value();
+    for (std::size_t b = 0; b < state.bodies.size(); ++b) {
+      const LevelTraits& level = traits(state.bodies[b].level);
+      stressed = stressed || level.has_stresses;
+      if (level.has_modes) find_section_forces(state, static_cast<int>(b), workspace_);
+    }
+    if (stressed || acting.stressed)
+      acting.sections = section_forces(workspace_);  // of a room, they are many
+    acting.stressed = stressed;
+    if (path_) path_->add_weight(now_.parameters, state, acting.sections);
+  }
+  return {state, acting.contacts, acting.between_members, acting.sections};
+}
+
+Snapshot Run::snapshot() const {
+  return view(state(), now_acting_);
 }
 
 Snapshot Run::snapshot(double time) const {
@@ -161,7 +180,8 @@ Snapshot Run::snapshot(double time) const {
 void Run::look_within(double time) const {
   const Model& model = setup_->model;
   state_within_step(model, now_.state, time, workspace_, within_);
-  find_acting(within_, contact_forces(model, now_.parameters, within_, workspace_), within_acting_);
+  find_acting(contact_forces(model, now_.parameters, within_, workspace_), within_acting_);
+  view(within_, within_acting_);
   for (std::size_t b = 0; b < model.bodies.size(); ++b)
     if (traits(within_.bodies[b].level).moves_nodes)
       section_forces(model, within_, static_cast<int>(b), within_acting_.sections);
@@ -175,7 +195,31 @@ void Run::observe_stresses_since(double start) {
   if (within_.bodies.empty()) look_within(end);  // takes its memory with the first step
   for (double row = std::floor(start * rate + k_row_slack) + 1; row < end * rate - k_row_slack; ++row) {
     look_within(row / rate);
-    now_.outcome.observe_stresses(setup_->model, within_, within_acting_.sections);
+    for (std::size_t b = 0; b < within_.bodies.size(); ++b)
+      if (has_stresses(within_.bodies[b]))
+        now_.outcome.observe_stresses(setup_->model, static_cast<int>(b), within_acting_.sections);
+  }
+}
+
+// Of an elastic body they are found only where they may be more than before.
+void Run::observe_stresses() {
+  const std::vector<SectionForces>& sections =
+      path_ ? view(now_.state, now_acting_).sections : section_forces(workspace_);
+  for (std::size_t b = 0; b < now_.state.bodies.size(); ++b) {
+    const LevelTraits& level = traits(now_.state.bodies[b].level);
+    const BodyOutcome& o = now_.outcome.bodies()[b];
+    double& peak =
+        now_.state.bodies[b].peak_stress;  // that of o knows times within steps, and none before it
+    const int body = static_cast<int>(b);
+    if (!level.has_stresses) continue;
+    if (level.has_modes) {
+      const double least = std::min(peak, o.peak_stress);
+      if (least > 0 && !may_exceed(now_.state, body, least, o.peak_yield_ratio.value_or(0), workspace_))
+        continue;
+      find_section_forces(now_.state, body, workspace_);
+    }
+    const double greatest = now_.outcome.observe_stresses(setup_->model, body, sections);
+    if (now_.state.time > now_.counted_from) peak = std::max(peak, greatest);  // a checkpoint has its own
   }
 }
 
@@ -194,9 +238,10 @@ void Run::observe() {
 void Run::observe(const std::vector<ContactForce>& contact_forces) {
   const Model& model = setup_->model;
   const State& state = now_.state;
-  find_acting(now_.state, contact_forces, now_acting_);
+  find_acting(contact_forces, now_acting_);
   if (!setup_->probes.empty() || !now_.places.empty() || setup_->run.stop_when == StopWhen::at_rest) point();
-  now_.outcome.observe(model, now_.parameters, state, contacts(), member_contacts(), sections(), events_);
+  observe_stresses();
+  now_.outcome.observe(model, now_.parameters, state, contacts(), member_contacts(), events_);
 
   for (std::size_t k = 0; k < now_.probes.size(); ++k) {
     const Probe& probe = setup_->probes[k];

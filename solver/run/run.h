@@ -135,9 +135,9 @@ class Run {
   double counted_from() const { return now_.counted_from; }
   const std::vector<ContactForce>& contacts() const { return now_acting_.contacts; }
   const std::vector<MemberForce>& member_contacts() const { return now_acting_.between_members; }
-  const std::vector<SectionForces>& sections() const { return now_acting_.sections; }
+  const std::vector<SectionForces>& sections() const { return snapshot().sections; }
   /// Of state().
-  Snapshot snapshot() const { return view(state(), now_acting_); }
+  Snapshot snapshot() const;
   /// At `time` within the newest step that was taken (state_between), until the next call.
   Snapshot snapshot(double time) const;
   std::int64_t newton_iterations() const { return now_.newton_iterations; }
@@ -154,16 +154,17 @@ class Run {
     std::vector<ContactForce> contacts;
     std::vector<MemberForce> between_members;
     std::vector<SectionForces> sections;
+    bool sections_found = false;
     bool stressed = true;  // some of them may not be zero
   };
-  static Snapshot view(const State& state, const Acting& acting) {
-    return {state, acting.contacts, acting.between_members, acting.sections};
-  }
-  void find_acting(const State& state, const std::vector<ContactForce>& contacts, Acting& acting) const;
+  void find_acting(const std::vector<ContactForce>& contacts, Acting& acting) const;
+  // Its sections and the snapshot, while the contacts of `state` are those found last.
+  Snapshot view(const State& state, Acting& acting) const;
   // Sets within_ and what acts there; nodes of bodies that are no frames are not placed.
   void look_within(double time) const;
   void observe();
   void observe(const std::vector<ContactForce>& contact_forces);
+  void observe_stresses();
   // At the recorded times within the newest step, which began at `start`, s.
   void observe_stresses_since(double start);
   void observe_peaks();
@@ -175,7 +176,7 @@ class Run {
   std::optional<LoadPath> path_;  // static runs
   StepStatus status_;
   std::vector<Event> events_;
-  Acting now_acting_;
+  mutable Acting now_acting_;
   mutable State within_;  // of snapshot(time)
   mutable Acting within_acting_;
 };

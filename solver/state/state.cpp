@@ -150,7 +150,8 @@ ElementPair as_pair(double number) {
   return {static_cast<int>(bits >> 32), static_cast<int>(bits & 0xffffffff)};
 }
 
-// Calls f on the counts and entries of what touches, which differ from state to state, and on the blocks.
+// Calls f on the counts and entries of what touches, which differ from state to state, on the blocks and on
+// the peak stresses; before these stand the indices of their bodies, of the latter behind those of all.
 template <class F>
 void each_touching(const State& s, F f) {
   f(bits_as<double>(static_cast<std::int64_t>(s.candidate_pairs.size())));
@@ -161,11 +162,16 @@ void each_touching(const State& s, F f) {
     f(bits_as<double>(static_cast<std::int64_t>(stick.place)));
     for (int k = 0; k < 3; ++k) f(stick.stick[k]);
   }
-  for (std::size_t b = 0; b < s.bodies.size(); ++b)
+  for (std::size_t b = 0; b < s.bodies.size(); ++b) {
     if (traits(s.bodies[b].level).has_block) {
       f(bits_as<double>(static_cast<std::int64_t>(b)));
       each_block_number(s.blocks[b], f);
     }
+    if (s.bodies[b].peak_stress > 0) {
+      f(bits_as<double>(static_cast<std::int64_t>(s.bodies.size() + b)));
+      f(s.bodies[b].peak_stress);
+    }
+  }
 }
 
 // Inverse of each_touching; false when there are too few or too many numbers.
@@ -199,9 +205,12 @@ bool read_touching(std::span<const double> numbers, const Model& model, State& s
     for (int k = 0; k < 3; ++k) stick.stick[k] = read();
   }
   while (next < numbers.size()) {
-    const auto body = bits_as<std::int64_t>(read());
-    if (body < 0 || body >= static_cast<std::int64_t>(s.blocks.size())) return false;
-    each_block_number(s.blocks[static_cast<std::size_t>(body)], [&](double& x) { x = read(); });
+    const std::size_t index = bits_as<std::uint64_t>(read()), bodies = s.bodies.size();
+    if (index >= 2 * bodies) return false;
+    if (index >= bodies)
+      s.bodies[index - bodies].peak_stress = read();
+    else
+      each_block_number(s.blocks[index], [&](double& x) { x = read(); });
   }
   return next == numbers.size();
 }
@@ -359,7 +368,7 @@ class Finiteness {
     }
     look_at(load(b.rotation.coeffs().data()), 0);
     look_at(b.calm_since, b.substep, total(b.position), total(b.velocity), 1);
-    look_at(total(b.angular_velocity), total(b.force), total(b.moment), 0, 2);
+    look_at(total(b.angular_velocity), total(b.force), total(b.moment), b.peak_stress, 2);
   }
   void look(const BlockState& b) {
     const planar::State& m = b.motion;

@@ -46,4 +46,15 @@ const std::vector<SectionForces>& section_forces(Workspace& workspace) {
   return workspace.impl().parts.sections;
 }
 
+void find_section_forces(const State& state, int body, Workspace& workspace) {
+  workspace.impl().parts.find_sections(state, body);
+}
+
+bool may_exceed(const State& state, int body, double stress, double yield_ratio, Workspace& workspace) {
+  constexpr double k_rounding = 1 + 1e-12;  // of the bound and of what it is compared with
+  const ReducedBody& elastic = workspace.impl().parts.reduced(state, body);
+  const BodyState& s = state.bodies[body];
+  return k_rounding * elastic.stress_bound(s) > stress || k_rounding * elastic.yield_bound(s) > yield_ratio;
+}
+
 }  // namespace topple

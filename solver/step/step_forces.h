@@ -13,7 +13,7 @@
 namespace topple {
 
 /// Contact forces of planes at `state`, ordered by point then plane; the list lives until the next call with
-/// `workspace`. Also finds the section forces of elastic bodies.
+/// `workspace`.
 const std::vector<ContactForce>& contact_forces(const Model& model, const Parameters& parameters,
                                                 const State& state, Workspace& workspace);
 /// The same at the state that the newest step led to, under the parameters that it had: cheaper.
@@ -23,7 +23,13 @@ const std::vector<ContactForce>& contact_forces_after_step(const State& state, W
 const std::vector<MemberForce>& member_forces(Workspace& workspace);
 
 /// Section forces of every element at the state that prepare, resume or the last successful step left; of
-/// bodies that are not frames, at that of the last contact_forces.
+/// elastic bodies, as find_section_forces found them last.
 const std::vector<SectionForces>& section_forces(Workspace& workspace);
+
+/// Of an elastic body at `state`, that of the last contact_forces: finds its section forces; says by an upper
+/// bound, which is cheaper, whether somewhere the stress may be more than `stress`, Pa, or sqrt(f + 1)
+/// (plasticity.h) more than `yield_ratio`.
+void find_section_forces(const State& state, int body, Workspace& workspace);
+bool may_exceed(const State& state, int body, double stress, double yield_ratio, Workspace& workspace);
 
 }  // namespace topple

@@ -3,6 +3,7 @@
 // those under 0.1 % more and less of the shake: what that changes no accuracy of 1 % decides. TOPPLE_ROOM:
 // the number of a room, whose text comes first, or the name of a scene: this one alone. A line for each:
 //   NAME: MODELS; error about E %, E % before it lands, E % of the frame; FALLS; balance B; SPEED
+// and, where stresses are asked for, how far the greatest ones are off, of the frame, too.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
@@ -157,6 +158,16 @@ double time_difference(const Track& a, const Track& exact) {
   return greatest;
 }
 
+/// Of a body's greatest stress, the one that is off most, with its sign.
+double stress_difference(const Track& a, const Track& exact) {
+  double greatest = 0;
+  for (std::size_t b = 0; b < exact.bodies.size(); ++b) {
+    const double off = a.bodies[b].peak_stress / exact.bodies[b].peak_stress - 1;
+    if (std::abs(off) > std::abs(greatest)) greatest = off;
+  }
+  return greatest;
+}
+
 void compare_with_frames(const std::string& name, const topple::Setup& setup) {
   constexpr double k_same_time = 0.01, k_times_off = 0.02;
   constexpr double k_other_shake = 1e-3;  // a tenth of the accuracy that is asked for
@@ -203,6 +214,9 @@ void compare_with_frames(const std::string& name, const topple::Setup& setup) {
       "balance {:.1e}; {:.2f} s, frames {:.1f} s\n",
       name, fmt::join(models, ", "), 100 * estimate, 100 * difference(chosen, exact),
       100 * difference(frames, exact), falls, chosen.balance, chosen.seconds, frames.seconds);
+  if (setup.parameters.want_stress)
+    std::cout << fmt::format("{}: greatest stress {:.2g} % off, {:.2g} % of the frame\n", name,
+                             100 * stress_difference(chosen, exact), 100 * stress_difference(frames, exact));
   EXPECT_EQ(chosen.failure, "") << name;
   EXPECT_LT(chosen.balance, 1e-3) << name;
   EXPECT_LT(pinch, 1) << name << ": a member went through another";

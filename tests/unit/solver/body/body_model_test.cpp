@@ -258,7 +258,7 @@ Outcome outcome_of(const topple::Setup& setup) {
   return run.outcome();
 }
 
-// Frames change by 0.6 and 7 % (one that knocks) at a tenth of the tolerance.
+// Frames change by 0.6 and 7 % (those that knock) at a tenth of the tolerance.
 TEST(Blow, makes_an_elastic_body_a_frame_where_stresses_are_asked_for) {
   for (topple::Setup (*scene)(BodyModel) : {let_go_on_stiff_contacts, knocks}) {
     topple::Setup frames = scene(BodyModel::frame);
@@ -267,7 +267,7 @@ TEST(Blow, makes_an_elastic_body_a_frame_where_stresses_are_asked_for) {
                   elastic = outcome_of(scene(BodyModel::elastic));
     for (std::size_t b = 0; b < truth.bodies().size(); ++b) {
       const double stress = truth.bodies()[b].peak_stress;
-      EXPECT_NEAR(automatic.bodies()[b].peak_stress, stress, 0.02 * stress);
+      EXPECT_NEAR(automatic.bodies()[b].peak_stress, stress, (scene == knocks ? 0.07 : 0.02) * stress);
       EXPECT_GT(elastic.bodies()[b].peak_stress, 1.2 * stress);
       EXPECT_GT(elastic.bodies()[b].level_changes[0].error_estimate, 0.2);
       EXPECT_LE(automatic.bodies()[b].level_changes[0].error_estimate, 0.01);
@@ -275,6 +275,68 @@ TEST(Blow, makes_an_elastic_body_a_frame_where_stresses_are_asked_for) {
     EXPECT_EQ(automatic.bodies()[0].level_changes[1].level, ModelLevel::frame);
     EXPECT_EQ(automatic.bodies()[0].level_changes[1].reason, LevelReason::blow);
   }
+}
+
+// A blow of an eighth of the speed raises an eighth, and is as far off: what is allowed goes by the peak. The
+// bound of what stands is a few times the stress there is, hence the peak of the frames.
+TEST(Blow, counts_as_much_as_it_raises_the_greatest_stress) {
+  topple::Setup setup = paper_cabinet(BodyModel::elastic);
+  setup.parameters.contact.alpha = k_stiff;
+  Simulation sim = simulate(setup);
+  BodyState& s = sim.state.bodies[0];
+  ReducedBody body(sim.model, 0);
+  body.find_contacts(StepInputs(sim.parameters, 0), s, sim.state.stick);
+  const ContactLaw& law = sim.parameters.contact;
+  const auto error = [&](double speed) { return body.blow_error(law, s, speed, true); };
+  const double now = body.stress_bound(s), all = body.blow_error(law, true);
+  EXPECT_EQ(error(0), 0);
+  EXPECT_EQ(error(10), all);
+  const double slow = error(1e-3);
+  EXPECT_GT(slow, 0);
+  EXPECT_NEAR(error(8e-3), 8 * slow, 1e-9);
+  const double raises = slow / all * now;  // Pa, of the slow one
+  s.peak_stress = 1.01 * now;
+  EXPECT_NEAR(error(1e-3) * 1.01, slow, 1e-9);
+  s.peak_stress = now + 1.9 * raises;
+  EXPECT_GT(error(1e-3), 0);
+  s.peak_stress = now + 2.1 * raises;  // it makes no new peak
+  EXPECT_EQ(error(1e-3), 0);
+}
+
+// Of a free beam pushed at its end across itself, at rest in its own accelerating axes: M = 4/27 F l at l/3.
+TEST(Blow, raises_what_its_force_does_at_rest) {
+  constexpr int k_members = 12;
+  constexpr double k_length = 3;  // m
+  topple::Setup setup;
+  setup.model = steel_model();
+  FrameSpec spec;
+  for (int i = 0; i <= k_members; ++i) spec.nodes.emplace_back(0, 0, k_length * i / k_members);
+  for (int i = 0; i < k_members; ++i) spec.members.push_back({{i, i + 1}, 0, 0});
+  setup.starts = add_frame(setup.model, spec);
+  compute_as(setup, BodyModel::elastic);
+  const Section& section = setup.model.sections[0];
+  const double exact = 4. / 27 * k_length * section.fibre_y() / section.iz;
+  // masses lie at 25 nodes
+  EXPECT_NEAR(setup.model.bodies[0].elastic->rest_stress[0], exact, 0.01 * exact);
+}
+
+// Found only where a bound says that they may be more than before, they are those of every step.
+TEST(ElasticBody, has_the_greatest_stresses_of_all_its_steps) {
+  topple::Setup setup = paper_cabinet(BodyModel::elastic);
+  shake(setup, 3, 1);
+  topple::Run run(setup);
+  Outcome all(setup.model, setup.starts);
+  int steps = 0;
+  while (!run.over()) {
+    ASSERT_EQ(run.state().bodies[0].level, ModelLevel::elastic);
+    all.observe_stresses(setup.model, 0, run.sections());
+    steps += all.bodies()[0].peak_stress > 0.999 * run.outcome().bodies()[0].peak_stress;
+    ASSERT_TRUE(run.advance().ok());
+  }
+  all.observe_stresses(setup.model, 0, run.sections());
+  EXPECT_GT(steps, 10);
+  EXPECT_EQ(all.bodies()[0].peak_stress, run.outcome().bodies()[0].peak_stress);
+  EXPECT_EQ(all.bodies()[0].peak_stress, run.state().bodies[0].peak_stress);
 }
 
 // Nor where nothing strikes: what stands, and sways with the floor.

@@ -392,6 +392,29 @@ TEST(ModelLevel, a_frame_bears_what_the_elastic_body_bore_that_it_was) {
     EXPECT_NEAR(run.contacts()[k].normal, before[k].normal, 0.05 * before[k].normal) << k;
 }
 
+// The spring that friction holds has the flexibility of the point behind it in an elastic body and not in a
+// frame: as long as it was it would bear eight times as much, or slip.
+TEST(ModelLevel, friction_bears_after_a_change_what_it_bore_before) {
+  topple::Setup setup = paper_cabinet(BodyModel::elastic);
+  setup.parameters.contact.alpha = 1e5 * k_g;
+  setup.parameters.gravity += Vec3(0.1 * k_g, 0, 0);
+  Simulation sim = simulate(setup);
+  const auto friction = [&] {
+    Vec3 sum = Vec3::Zero();
+    for (const ContactForce& contact : sim.contacts()) sum += contact.force;
+    sum.z() = 0;
+    return sum;
+  };
+  const double weight = sim.model.bodies[0].mass * k_g;
+  for (const BodyModel model : {BodyModel::frame, BodyModel::elastic, BodyModel::rigid, BodyModel::elastic}) {
+    const Vec3 before = friction();
+    EXPECT_LT(before.x(), -0.05 * weight);
+    sim.parameters.models[0] = model;
+    ASSERT_TRUE(sim.advance(1));
+    EXPECT_LT((friction() - before).norm(), 0.02 * weight) << traits(sim.state.bodies[0].level).word;
+  }
+}
+
 /// On contacts so stiff that explicit substeps of a frame cost less than implicit steps.
 topple::Setup falls_on_a_stiff_floor(BodyModel model) {
   topple::Setup setup = shaken_until_it_yields();

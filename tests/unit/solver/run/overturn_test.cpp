@@ -284,13 +284,14 @@ struct Observed {
 
 Observed watch(Simulation& sim, double seconds) {
   Observed o;
-  Outcome outcome(sim.model, std::vector<BodyStart>(sim.model.bodies.size()));
   std::vector<SectionForces> sections;
+  Outcome outcome(sim.model, std::vector<BodyStart>(sim.model.bodies.size()));
   const int steps = static_cast<int>(std::lround(seconds / sim.parameters.time_step));
   for (int i = 0; i <= steps; ++i) {
     if (i > 0 && !sim.advance(1)) break;
     section_forces(sim.model, sim.state, sections);
-    outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), {}, sections, o.events);
+    outcome.observe_stresses(sim.model, 0, sections);
+    outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), {}, o.events);
   }
   o.outcome = outcome.bodies()[0];
   o.final_tilt = o.outcome.tilt;
@@ -336,14 +337,12 @@ TEST(Overturn, what_came_back_from_farther_overturns_at_its_own_angle_and_keeps_
   const Standing upright = standing(0);
   Outcome outcome(upright.model, std::vector<BodyStart>(upright.model.bodies.size()));
   std::vector<Event> events;
-  std::vector<SectionForces> sections;
   std::int64_t step = 0;
   const auto share_after = [&](double share) {
     Simulation there = released(share * k_edge_angle, 1000);
     there.state.step = step++;
     there.state.time = 0.1 * static_cast<double>(step);
-    section_forces(there.model, there.state, sections);
-    outcome.observe(there.model, there.parameters, there.state, there.contacts(), {}, sections, events);
+    outcome.observe(there.model, there.parameters, there.state, there.contacts(), {}, events);
     return outcome.bodies()[0].peak.share;
   };
   constexpr double k_close = 1e-3;  // as released, the frame has not bent yet
@@ -437,14 +436,12 @@ TEST(Overturn, uplift_and_impact_count_from_the_stated_angle_on) {
     };
     Outcome outcome(s.model, {s.start});
     std::vector<Event> events;
-    std::vector<SectionForces> sections;
-    section_forces(sim.model, sim.state, sections);
     const auto observe = [&](double time, double angle, bool lifted) {
       State state = sim.state;
       state.time = time;
       const Quat turn = exp_quaternion(Vec3(0, angle, 0));
       for (Vec3& x : state.position) x = turn * x;
-      outcome.observe(sim.model, sim.parameters, state, carried(lifted), {}, sections, events);
+      outcome.observe(sim.model, sim.parameters, state, carried(lifted), {}, events);
     };
     observe(1, 0, true);
     observe(2, share * k_uplift_angle, true);
@@ -503,15 +500,13 @@ TEST(Overturn, slow_push_lifts_a_side_at_g_b_over_h_and_topples_just_above) {
     p.shakes.push_back(push);
     Simulation sim(s.model, {s.start}, p, true);
     Outcome outcome(sim.model, std::vector<BodyStart>(sim.model.bodies.size()));
-    std::vector<SectionForces> sections;
     std::vector<Event> events;
     double lifted_at = 0, since = 0;
     for (int i = 0; i < 3500; ++i) {
       sim.parameters.shakes[0].amplitude = share * threshold * std::min(1., i / 2000.);
       if (outcome.bodies()[0].beyond_since) break;
       ASSERT_TRUE(sim.advance(1));
-      section_forces(sim.model, sim.state, sections);
-      outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), {}, sections, events);
+      outcome.observe(sim.model, sim.parameters, sim.state, sim.contacts(), {}, events);
       if (lifted_at == 0 && std::ranges::any_of(outcome.bodies()[0].sides, &BodyOutcome::Side::open)) {
         lifted_at = sim.parameters.shakes[0].amplitude;
         since = sim.state.time;
@@ -541,7 +536,6 @@ TEST(Overturn, members_below_bear_the_sides_that_they_touch_wherever_the_body_st
   const Body& body = model.bodies[0];
   const auto& polygon = body.support_polygon;
   const double base = polygon[0].z(), weight = body.mass * k_g;
-  const std::vector<SectionForces> sections(model.elements.size(), {Vec3::Zero(), Vec3::Zero()});
   int on_base = 0;
   for (int e = body.first_element; e < body.first_element + body.element_count; ++e)
     for (const double place : {0., 0.3, 1.}) {
@@ -552,7 +546,7 @@ TEST(Overturn, members_below_bear_the_sides_that_they_touch_wherever_the_body_st
       Outcome outcome(model, std::vector<BodyStart>(model.bodies.size()));
       std::vector<Event> events;
       const MemberForce force{{e, body.element_count}, place, 0.5, 0.1, Vec3(0, 0, weight)};
-      outcome.observe(model, {}, state, {}, {force}, sections, events);
+      outcome.observe(model, {}, state, {}, {force}, events);
       const bool bears = std::abs(x.z() - base) < 1e-9;
       on_base += bears;
       // sides that carry nothing have let go, but only while the body stands on another
@@ -578,8 +572,7 @@ TEST(Overturn, peak_stress_is_at_the_corner_where_normal_force_and_both_moments_
   const double force = -900, half = 0.015;
   sections[3] = {Vec3(force, 0, 0), moment};
   Outcome outcome(s.model, {s.start});
-  std::vector<Event> events;
-  outcome.observe(s.model, {}, state, {}, {}, sections, events);
+  outcome.observe_stresses(s.model, 0, sections);
   const double normal = std::abs(force) / post.area + std::abs(moment.y()) * half / post.iy +
                         std::abs(moment.z()) * half / post.iz;
   const double shear = moment.x() * half / post.j;
@@ -590,23 +583,22 @@ TEST(Overturn, peak_stress_is_at_the_corner_where_normal_force_and_both_moments_
 TEST(Overturn, a_hinge_that_unloads_within_the_step_counts_but_not_one_from_before_a_checkpoint) {
   const Standing s = standing();
   State state = start_state(s.model, {s.start});
-  const std::vector<SectionForces> sections(s.model.elements.size(), {Vec3::Zero(), Vec3::Zero()});
   Outcome outcome(s.model, {s.start}), later = outcome;
   std::vector<Event> events;
-  outcome.observe(s.model, {}, state, {}, {}, sections, events);
+  outcome.observe(s.model, {}, state, {}, {}, events);
   state.step = 7;
   state.elements[3].offset.kappa = {1e-4, 0, 0};  // twist: at both ends, none of which flows now
-  for (int k = 0; k < 2; ++k) outcome.observe(s.model, {}, state, {}, {}, sections, events);
+  for (int k = 0; k < 2; ++k) outcome.observe(s.model, {}, state, {}, {}, events);
   EXPECT_EQ(outcome.bodies()[0].hinges, 2);
   ASSERT_EQ(std::ranges::count(events, Event::Kind::hinge, &Event::kind), 2);
   EXPECT_EQ(events.back().element, 3);
   EXPECT_EQ(events.back().value, static_cast<double>(Hinge::second));
 
   events.clear();
-  later.observe(s.model, {}, state, {}, {}, sections, events);
+  later.observe(s.model, {}, state, {}, {}, events);
   EXPECT_EQ(later.bodies()[0].hinges, 0);
   state.elements[3].hinge = Hinge::second;
-  later.observe(s.model, {}, state, {}, {}, sections, events);
+  later.observe(s.model, {}, state, {}, {}, events);
   EXPECT_EQ(later.bodies()[0].hinges, 0);  // it had flowed
   EXPECT_EQ(std::ranges::count(events, Event::Kind::hinge, &Event::kind), 0);
 }

@@ -72,6 +72,20 @@ TEST(State, every_member_has_its_own_place_in_a_checkpoint) {
   EXPECT_EQ(pack(unpack(sim.model, numbers)), numbers);
 }
 
+TEST(State, a_peak_stress_adds_its_own_to_a_checkpoint_and_none_adds_nothing) {
+  Simulation sim = rocking();
+  const std::vector<double> without = pack(sim.state);
+  sim.state.bodies[0].peak_stress = 3.7e6;
+  const std::vector<double> numbers = pack(sim.state);
+  EXPECT_EQ(numbers.size(), without.size() + 2);
+  EXPECT_EQ(unpack(sim.model, numbers).bodies[0].peak_stress, 3.7e6);
+  EXPECT_EQ(unpack(sim.model, without).bodies[0].peak_stress, 0);
+  EXPECT_NE(hash(numbers), hash(without));
+  std::vector<double> other = numbers;
+  other[numbers.size() - 2] = std::bit_cast<double>(std::int64_t{3});  // of a second of one
+  EXPECT_THROW(unpack(sim.model, other), std::invalid_argument);
+}
+
 TEST(State, anchors_add_their_own_to_a_checkpoint_and_none_add_nothing) {
   Simulation without = rocking();
   Model model = without.model;
