@@ -219,6 +219,14 @@ std::string differ_unheld(const ReportPage& page, const ordered_json& without) {
   return names;
 }
 
+/// What the run with anchors is not warned of as well.
+std::vector<std::string> warned_without(const ReportPage& page, const ordered_json& without) {
+  const auto with = page.report().summary["warnings"].get<std::vector<std::string>>();
+  auto warnings = without["warnings"].get<std::vector<std::string>>();
+  std::erase_if(warnings, [&](const std::string& one) { return std::ranges::find(with, one) != with.end(); });
+  return warnings;
+}
+
 }  // namespace
 
 std::string anchors_section(ReportPage& page) {
@@ -252,6 +260,7 @@ std::string anchors_section(ReportPage& page) {
   out += page.table(head, rows);
   if (const std::string names = differ_unheld(page, without); !names.empty())
     out += page.paragraph(page.say(words::k_unheld_differ, names), "note");
+  out += page.list(words::k_warnings_without, warned_without(page, without));
   return page.section(words::k_anchors, out);
 }
 

@@ -200,6 +200,13 @@ std::string ReportPage::paragraph(const std::string& html, const char* kind) con
   return (*kind ? fmt::format("<p class=\"{}\">", kind) : "<p>") + html + "</p>\n";
 }
 
+std::string ReportPage::list(const Phrase& head, const std::vector<std::string>& sentences) const {
+  if (sentences.empty()) return "";
+  std::string out = paragraph(say(head)) + "<ul lang=\"en\">\n";
+  for (const std::string& sentence : sentences) out += "<li>" + escaped(sentence) + "</li>\n";
+  return out + "</ul>\n";
+}
+
 std::string ReportPage::figure(const std::string& html, const std::string& caption) const {
   return "<figure>\n" + html + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
 }

@@ -364,6 +364,8 @@ inline constexpr Phrase k_error_failed{"The finer run failed ({0}); the error is
 inline constexpr Phrase k_balance{"Energy that nothing explains: {0} % of the largest energy exchanged.",
                                   "説明のつかないエネルギー：交換された最大エネルギーの{0} %。"};
 inline constexpr Phrase k_warnings{"The program warns:", "プログラムの警告（英語）："};
+inline constexpr Phrase k_warnings_without{"The program warns of the run without anchors:",
+                                           "固定なしの計算に対するプログラムの警告（英語）："};
 
 // assumptions
 inline constexpr Phrase k_assumptions{"What the model assumes", "モデルの仮定"};

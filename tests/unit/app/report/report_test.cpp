@@ -83,6 +83,21 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
   EXPECT_TRUE(holds(page(Language::japanese), "固定具の有無による違い"));
 }
 
+TEST_F(ReportPageTest, what_the_run_without_anchors_is_warned_of_stands_beside_it) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  tell_of(scene);
+  report_.summary["warnings"] = {"both"};
+  report_.without_anchors = report_.summary;
+  EXPECT_FALSE(holds(page(), "warns of the run without anchors"));
+  (*report_.without_anchors)["warnings"].push_back("the stress in body \"box\" is beyond < all");
+  const std::string html = page();
+  EXPECT_TRUE(holds(html,
+                    "<p>The program warns of the run without anchors:</p>\n<ul lang=\"en\">\n"
+                    "<li>the stress in body &quot;box&quot; is beyond &lt; all</li>\n</ul>"));
+  EXPECT_LT(html.find("is beyond &lt; all"), html.find("How certain this is"));
+  EXPECT_TRUE(holds(page(Language::japanese), "固定なしの計算に対するプログラムの警告（英語）："));
+}
+
 // 50 kN/m and 2 kN, and what the summary says of the run.
 TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
   const io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
