@@ -311,7 +311,8 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const T
         event.time, y, [&] { return mark.text(player, event); },
         [&](ImVec2 p) { mark.draw(list, p, size, colour); });
   }
-  for (const EditMark& mark : edit_marks(player.edits()))
+  for (const EditMark& mark :
+       edit_marks(player.edits(), [&](const LoggedEdit& edit) { return player.goes_on(edit); }))
     add(
         is_pull(mark) ? mark.first.time : mark.last.time, lane.top, [&] { return edit_text(player, mark); },
         [&](ImVec2 p) { add_edit_mark(list, p, size); });

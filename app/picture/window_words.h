@@ -79,10 +79,10 @@ inline constexpr Phrase k_floor_sweep{"floor: sweep {0:.4g} to {1:.4g} Hz, {2:.4
 inline constexpr Phrase k_floor_pulse{"floor: pulse {0:g} s, {1:.4g} gal", "床：パルス {0:g} s、{1:.4g} gal"};
 inline constexpr Phrase k_floor_record{"floor: record {0:.3g} s, peak {1:.4g} gal",
                                        "床：加速度記録 {0:.3g} s、最大 {1:.4g} gal"};
-inline constexpr Phrase k_floor_record_since{
-    "floor: record {0:.3g} s, scaled to a peak of {1:.4g} gal since {2:.2f} s",
-    "床：記録波 {0:.3g} s、{2:.2f} s から最大 {1:.4g} gal に拡大"};
+inline constexpr Phrase k_floor_record_since{"floor: record {0:.3g} s, times {1:.3g} since {2:.2f} s",
+                                             "床：加速度記録 {0:.3g} s、{2:.2f} s から {1:.3g} 倍"};
 inline constexpr Phrase k_still_at{", still {0:.0f} gal", "（移行中、現在 {0:.0f} gal）"};
+inline constexpr Phrase k_still_times{", still times {0:.3g}", "（移行中、現在 {0:.3g} 倍）"};
 inline constexpr Phrase k_shake_from{", from {0:.4g} s on", "、{0:.4g} sから"};
 inline constexpr Phrase k_shake_over{", over since {0:.4g} s", "、{0:.4g} sに終了"};
 inline constexpr Phrase k_more_shakes{"{0}, and {1} more", "{0}、ほか{1}件"};

@@ -99,19 +99,18 @@ constexpr ShakeWords k_shake_words[] = {
     {Shake::Kind::pulse, [](const Shake& s) { return say(k_floor_pulse, s.duration, s.amplitude / k_gal); }},
     {Shake::Kind::record,
      [](const Shake& s) {
-       const double peak = std::abs(s.scale) * s.record->peak / k_gal;
        const bool since = s.ramp.over > 0 && s.ramp.since > s.start;
-       return since ? say(k_floor_record_since, s.record->duration, peak, s.ramp.since)
-                    : say(k_floor_record, s.record->duration, peak);
+       return since ? say(k_floor_record_since, s.record->duration, s.scale,
+                          s.ramp.since)  // its peak may be past
+                    : say(k_floor_record, s.record->duration, std::abs(s.scale) * s.record->peak / k_gal);
      }},
 };
 
 /// Of an edit that has not come to its end.
 std::string change_in_words(const Shake& shake, double t) {
   if (shake.ramp.over == 0 || shake.ramp.share(t) == 1) return "";
-  const double now = traits(shake.kind).has_amplitude ? shake_amplitude(shake, t).norm()
-                                                      : std::abs(shake_scale(shake, t)) * shake.record->peak;
-  return say(k_still_at, now / k_gal);
+  return traits(shake.kind).has_amplitude ? say(k_still_at, shake_amplitude(shake, t).norm() / k_gal)
+                                          : say(k_still_times, shake_scale(shake, t));
 }
 
 std::string building_in_words(const Shake& shake) {

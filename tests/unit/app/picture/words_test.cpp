@@ -71,6 +71,16 @@ TEST(Words, a_shake_that_is_on_its_way_to_another_amplitude_says_what_it_is_now)
   EXPECT_EQ(shake_in_words(parameters, 0.1 + 0.5 / 4), "floor: 2 Hz, 200 gal");
 }
 
+// Its peak may have passed by then.
+TEST(Words, a_record_that_is_scaled_on_its_way_tells_the_factor_and_no_peak) {
+  const io::Scene scene = io::load_scene("near-fault");
+  Parameters parameters = scene.setup.parameters;
+  ASSERT_EQ(shake_in_words(parameters, 9), "floor: record 20 s, peak 450 gal");
+  apply({.key = Edit::Key::scale, .value = Vec3(0.5, 0, 0)}, scene.setup.model, 9, parameters);
+  EXPECT_EQ(shake_in_words(parameters, 9), "floor: record 20 s, times 0.5 since 9.00 s, still times 1");
+  EXPECT_EQ(shake_in_words(parameters, 15), "floor: record 20 s, times 0.5 since 9.00 s");
+}
+
 // A cabinet turns about the edge of its base by 30 degrees, which moves the middle of the base by b (1 - cos
 // 30), 25 mm, and then slides 7 mm.
 TEST(Words, what_turns_about_an_edge_has_not_slid) {
