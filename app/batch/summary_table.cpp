@@ -205,7 +205,7 @@ std::string allowed_error(const ordered_json& s, const ordered_json& body, const
   if (solid) return "; its contacts give, which puts it off by " + off;
   const bool on_hard_floor = change["model"] == "planar" && s["contact"]["stands_for_hard_floor"] == true;
   const char* const but = change["model"] == "elastic" ? "but for friction at its feet "
-                          : on_hard_floor              ? "but for how contacts give "
+                          : on_hard_floor              ? "not counting how far its contacts give way, it is "
                                                        : "";
   return fmt::format("; {}off from a frame by {}", but, off);
 }

@@ -255,12 +255,12 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   // contacts that stand for a hard floor give, of which the estimate of a block knows nothing
   body["models"][0]["model"] = "planar";
   s["contact"]["stands_for_hard_floor"] = true;
-  EXPECT_NE(
-      summary_table(s).find("; but for how contacts give off from a frame by about 0.04 % until it lands"),
-      std::string::npos)
+  EXPECT_NE(summary_table(s).find("; not counting how far its contacts give way, it is off from a frame by "
+                                  "about 0.04 % until it lands"),
+            std::string::npos)
       << summary_table(s);
   s["contact"]["stands_for_hard_floor"] = false;
-  EXPECT_EQ(summary_table(s).find("but for how contacts give"), std::string::npos);
+  EXPECT_EQ(summary_table(s).find("contacts give way"), std::string::npos);
   // it has fallen before it becomes that
   body["overturn_time_s"] = 2;
   body["models"][0]["from_s"] = 2.5;
