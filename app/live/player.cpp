@@ -208,6 +208,11 @@ bool Player::goes_on_at_end() const {
   return live_shown() && status_.kind == LiveStatus::Kind::halted;
 }
 
+bool Player::is_live(std::int32_t branch) const {
+  return !replay() && branch == status_.branch && status_.kind != LiveStatus::Kind::over &&
+         status_.kind != LiveStatus::Kind::ended;
+}
+
 bool Player::can_halve_step() const {
   return status_.kind == LiveStatus::Kind::failed && can_edit() &&
          scene_->setup.run.analysis == Analysis::dynamic &&

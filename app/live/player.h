@@ -67,6 +67,8 @@ class Player {
   void continue_from_here();
   void show_branch(std::int32_t branch);
   std::int32_t shown_branch() const { return shown_; }
+  /// Whether it is computed, or will be when played: a run that has ended is not.
+  bool is_live(std::int32_t branch) const;
   const History& history() const { return history_; }
 
   // Edits, at the head of the live branch only.
