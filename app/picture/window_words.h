@@ -243,6 +243,9 @@ inline constexpr Phrase k_type{"type", "波形"};
 inline constexpr Phrase k_shake_once{"Shake once", "1回だけ揺らす"};
 inline constexpr Phrase k_shake_once_about{"A pulse from now on; of a sine, half of one period",
                                            "現時刻からパルスを加える。正弦波では半周期分"};
+inline constexpr Phrase k_shake_once_ended{
+    "The run has ended, so nothing would move any more.\nR goes back to its start.",
+    "計算が終了しているため、揺らしても動きません。\nR で先頭に戻れます。"};
 inline constexpr Phrase k_frequency{"frequency", "周波数"};
 inline constexpr Phrase k_amplitude{"amplitude", "加速度振幅"};
 inline constexpr Phrase k_direction{"direction", "加振方向"};
