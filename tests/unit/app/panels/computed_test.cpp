@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "app/panels/edit_marks.h"
+#include "app/panels/panels.h"
 #include "app/picture/window_words.h"
 #include "solver/io/edit/edit_text.h"
+#include "solver/model/excitation.h"
 #include "unit/app/live.h"
 
 namespace topple::app {
@@ -67,6 +69,28 @@ TEST(ComputedWords, every_choice_has_a_word_in_japanese) {
       const Phrase phrase = window_words::phrase_of_choice(word);
       EXPECT_NE(phrase.japanese, phrase.english) << word;
     }
+}
+
+// Rows stand at 72 and 108 degrees of each of its turns; of a shake that is half as strong none comes near.
+TEST(FloorPeak, a_peak_between_rows_is_the_one_that_the_scene_names) {
+  const double rate = 100, amplitude = 7;
+  Shake shake;
+  shake.frequency = 10;
+  shake.amplitude = amplitude;
+  shake.direction = Vec3(0, 1, 0);
+  std::vector<RowPtr> rows;
+  for (int i = 0; i < 100; ++i) {
+    auto row = std::make_shared<io::FrameRow>();
+    row->floor_acceleration[1] = shake_acceleration(shake, i / rate).y();
+    rows.push_back(std::move(row));
+  }
+  double seen = 0;
+  for (const RowPtr& row : rows) seen = std::max(seen, std::abs(row->floor_acceleration[1]));
+  ASSERT_LT(seen, 0.96 * amplitude);
+  EXPECT_EQ(floor_peak(rows, {shake}, rate), amplitude);
+  shake.amplitude *= 2;
+  EXPECT_EQ(floor_peak(rows, {shake}, rate), seen);
+  EXPECT_EQ(floor_peak(rows, {}, rate), seen);
 }
 
 TEST(EditMarks, one_drag_is_one_mark) {
