@@ -66,6 +66,8 @@ inline constexpr Phrase k_figure_overturned{"bodies overturned", "転倒する�
 inline constexpr Phrase k_of{"{0} of {1}", "{0}/{1}体"};
 inline constexpr Phrase k_first_fall{"first overturning", "最初の転倒"};
 inline constexpr Phrase k_greatest_tilt{"greatest tilt", "最大傾斜角"};
+inline constexpr Phrase k_tilt_of_nearest{"tilt of what comes nearest to overturning",
+                                          "最も転倒に近い家具の傾斜角"};
 inline constexpr Phrase k_peak_floor{"peak floor acceleration", "床の最大加速度"};
 inline constexpr Phrase k_degree_figure{"JMA {0}", "震度{0}相当"};
 inline constexpr Phrase k_instrumental{"intensity of the floor motion, instrumental {0}",
