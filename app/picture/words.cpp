@@ -9,6 +9,7 @@
 #include <span>
 
 #include "app/picture/furnish_words.h"
+#include "app/picture/title_words.h"
 #include "app/picture/touching_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
@@ -152,14 +153,22 @@ std::string when_in_words(const Shake& shake, double t) {
 
 }  // namespace
 
+std::string in_window_language(const std::string& title) {
+  const bool changed = title.ends_with(io::k_title_changed);
+  const std::string plain = title.substr(0, title.size() - (changed ? io::k_title_changed.size() : 0));
+  const auto* const known = ranges::find(title_words::k_titles, plain, &Phrase::english);
+  const std::string shown = known == std::end(title_words::k_titles) ? plain : say(*known);
+  return changed ? say(k_title_changed, shown) : shown;
+}
+
 std::string title_in_words(const io::Scene& scene, const Parameters& parameters, bool changed) {
   const Model& model = scene.setup.model;
   changed = changed || ranges::any_of(editable(model, parameters), [&](const auto& edited) {
               const auto& [key, index] = edited;
               return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
             });
-  return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, scene.title)
-                                                                : scene.title;
+  const std::string title = in_window_language(scene.title);
+  return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, title) : title;
 }
 
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,
