@@ -123,22 +123,24 @@ std::string info_table(const ordered_json& d) {
 }
 
 struct InfoOptions {
-  std::string file;     ///< scene or recording
-  std::string json;     ///< file, "-" or empty
-  bool verify = false;  ///< run a recording again
-  bool force = false;   ///< in place of files of any kind
+  std::string file;                    ///< scene or recording
+  std::string json;                    ///< file, "-" or empty
+  std::vector<std::string> overrides;  ///< KEY=VALUE
+  bool verify = false;                 ///< run a recording again
+  bool force = false;                  ///< in place of files of any kind
 };
 int info_command(const InfoOptions& options) {
-  const auto& [file, json, verified, force] = options;
+  const auto& [file, json, overrides, verified, force] = options;
   if (!json.empty() && json != "-")
     require_writable_text("--json", {json, force}, host::FileKind::json, file);
   ordered_json description;
   if (io::is_recording(file)) {
+    if (!overrides.empty()) throw BadInput("--set: " + file + " is a recording; only a scene can be changed");
     const io::Recording recording = open_foreign_recording(file);
     description = recording_description(recording);
     if (verified) description["verify"] = verify(recording);
   } else {
-    description = scene_description(io::load_scene(file));
+    description = scene_description(io::load_scene(file, overrides));
     if (verified) throw BadInput("--verify: " + file + " is a scene; only a recording can be run again");
   }
   // Another arithmetic is no fault of the file: what can be verified of it is.
@@ -159,6 +161,7 @@ void add_info(Commands& commands) {
                                             "info paper-a.h5 --verify --json -", info_command);
   add_path(command, "FILE", info.file, "", "scene or recording").required();
   add_json(command, info.json, "write JSON");
+  add_set(command, info.overrides);
   add_force(command, info.force);
   command.add_flag("--verify", info.verify,
                    "run the recording again; name the first step and element that differ, and tell damage "

@@ -10,6 +10,7 @@
 #include "app/chart/theme.h"
 #include "app/picture/bridge.h"
 #include "app/picture/furnish_words.h"
+#include "app/picture/words.h"
 #include "render/scene/text_layout.h"
 
 namespace topple::app {
@@ -271,7 +272,8 @@ void FurnishView::draw_over_scene(const render::OverlayFonts& fonts) {
   draw_outline_at_mouse(fonts);
   const float margin = 14 * scale_;
   const std::string title = render::shortened(
-      *fonts.text, room_.scene().title + " — " + say(furnish_words::k_furnishing), scene_.width - 2 * margin);
+      *fonts.text, in_window_language(room_.scene().title) + " — " + say(furnish_words::k_furnishing),
+      scene_.width - 2 * margin);
   list.AddText(fonts.text, fonts.text->FontSize, {scene_.left + margin, scene_.top + margin}, theme().text,
                title.c_str());
   list.PopClipRect();

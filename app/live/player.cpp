@@ -103,7 +103,9 @@ void Player::take(LiveReport&& report) {
   }
   for (const LoggedEdit& edit : report.edits) {
     history_.edits.push_back(edit);
-    if (!posted_.empty() && !replay()) posted_.erase(posted_.begin());
+    if (posted_.empty() || replay()) continue;
+    if (posted_.front().goes_on) going_on_.insert(place_of(edit));
+    posted_.erase(posted_.begin());
   }
   events_.insert(events_.end(), report.events.begin(), report.events.end());
   for (const StepStability& told : report.stabilities)
@@ -186,7 +188,7 @@ void Player::update_parameters() {
   parameters_so_far_ = parameters_before(scene_->setup, history_, branch, here.step);
   changed_so_far_ = changed_before(scene_->setup, history_, branch, here.step);
   if (head)
-    for (const Edit& edit : posted_) apply(edit, scene_->setup.model, here.time, parameters_);
+    for (const Posted& posted : posted_) apply(posted.edit, scene_->setup.model, here.time, parameters_);
 }
 
 bool Player::busy() const {
@@ -204,6 +206,11 @@ bool Player::nothing_goes_on() const {
 // What is played up to where a live run stands goes over into stepping.
 bool Player::goes_on_at_end() const {
   return live_shown() && status_.kind == LiveStatus::Kind::halted;
+}
+
+bool Player::is_live(std::int32_t branch) const {
+  return !replay() && branch == status_.branch && status_.kind != LiveStatus::Kind::over &&
+         status_.kind != LiveStatus::Kind::ended;
 }
 
 bool Player::can_halve_step() const {
@@ -349,8 +356,8 @@ bool Player::can_edit() const {
   return following_ && live_shown() && head_ && !busy();
 }
 
-void Player::post(const Edit& edit) {
-  posted_.push_back(edit);
+void Player::post(const Edit& edit, bool goes_on) {
+  posted_.push_back({edit, goes_on});
   run_.edit(edit);
   update_parameters();
 }
@@ -363,14 +370,15 @@ void Player::edit(const Edit& edit) {
   Undo& undo = undo_.back();
   const auto same = std::ranges::find_if(
       undo.again, [&](const Edit& other) { return other.key == edit.key && other.index == edit.index; });
-  if (same != undo.again.end()) {
+  const bool goes_on = same != undo.again.end();
+  if (goes_on) {
     *same = edit;
   } else {
     undo.back.push_back({edit.key, edit.index, edited_value(parameters_, edit.key, edit.index)});
     undo.again.push_back(edit);
   }
   redo_.clear();
-  post(edit);
+  post(edit, goes_on);
 }
 
 void Player::pull(const Edit& edit) {

@@ -5,7 +5,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -65,6 +67,8 @@ class Player {
   void continue_from_here();
   void show_branch(std::int32_t branch);
   std::int32_t shown_branch() const { return shown_; }
+  /// Whether it is computed, or will be when played: a run that has ended is not.
+  bool is_live(std::int32_t branch) const;
   const History& history() const { return history_; }
 
   // Edits, at the head of the live branch only.
@@ -109,6 +113,9 @@ class Player {
   /// Recorded on the same branches.
   std::vector<io::RecordedEvent> events() const;
   std::vector<LoggedEdit> edits() const;
+  /// Whether one of edits() went on with the one before it of its key, as while a slider was dragged; not
+  /// known of what was recorded.
+  bool goes_on(const LoggedEdit& edit) const { return going_on_.contains(place_of(edit)); }
   /// Greatest force of each anchor between the frames too, from the start of the branch that goes on to its
   /// newest state, N; empty: another branch is shown, or a recording.
   std::span<const double> anchor_peaks() const {
@@ -126,7 +133,11 @@ class Player {
   bool goes_on_at_end() const;
   bool forking() const { return forks_asked_ > status_.forks; }
   bool live_shown() const { return !replay() && shown_ == status_.branch; }
-  void post(const Edit& edit);
+  using EditPlace = std::tuple<std::int32_t, std::int64_t, Edit::Key, int>;
+  static EditPlace place_of(const LoggedEdit& edit) {
+    return {edit.branch, edit.step, edit.edit.key, edit.edit.index};
+  }
+  void post(const Edit& edit, bool goes_on = false);
   void take(LiveReport&& report);
   void keep(RowPtr row);
   void thin();
@@ -153,7 +164,12 @@ class Player {
   RunExtent extent_;
   Parameters parameters_, parameters_so_far_;
   bool changed_so_far_ = false;
-  std::vector<Edit> posted_;  // not yet applied by the run
+  struct Posted {
+    Edit edit;
+    bool goes_on;
+  };
+  std::vector<Posted> posted_;  // not yet applied by the run
+  std::set<EditPlace> going_on_;
   std::vector<Undo> undo_, redo_;
   bool playing_ = false, loop_ = false, following_ = true;
   bool new_undo_ = true;

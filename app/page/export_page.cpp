@@ -40,6 +40,7 @@ struct PageRows {
   std::vector<BodyEnd> ends;  ///< as far as rows tell
   std::optional<io::FrameRow> newest;
   io::FrameRow most_tilted;  ///< with the greatest tilt over critical angle
+  double greatest_load = 0;  ///< factor of the greatest size, of a static run
   RunExtent extent;
 };
 
@@ -81,6 +82,7 @@ std::optional<PageRows> rows_of(const io::Scene& scene, const PageRun& run,
     rows.extent.add(scene.setup, scene.setup.parameters, row);
     if (rows.kept.empty()) rows.most_tilted = row;
     observe(row, rows, greatest);
+    if (std::abs(row.load_factor) > std::abs(rows.greatest_load)) rows.greatest_load = row.load_factor;
     rows.newest = row;
     if (i % rows.stride == 0 || i + 1 == run.rows) rows.kept.push_back(std::move(row));
   }
@@ -116,6 +118,19 @@ std::vector<PlaceOutcome> hits_of(const Json& summary, const Model& model, const
       for (int b = 0; b < model.furniture_total(); ++b)
         if (model.bodies[static_cast<std::size_t>(b)].name == hit["body"])
           out[p].hits.push_back({b, hit["time_s"].get<double>()});
+  return out;
+}
+
+/// What loads that grow came to, and did.
+std::string loads_in_words(const PageRows& rows, const Json& summary, Language language) {
+  std::string out = say_in(language, page_words::k_greatest_load, rows.greatest_load);
+  if (!summary.contains("bodies")) return out;
+  for (const auto& [key, phrase] : {std::pair("hinges", &page_words::k_load_hinges),
+                                    std::pair("fractures", &page_words::k_load_breaks)}) {
+    int count = 0;
+    for (const Json& body : summary["bodies"]) count += body.value(key, 0);
+    if (count > 0) out += say_in(language, *phrase, count);
+  }
   return out;
 }
 
@@ -242,7 +257,8 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
       {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
        {"@TITLE@", escaped(title)},
        {"@STILLS@", stills(scene, run, *rows)},
-       {"@VERDICT@", escaped(verdict_in_words(ends, language))},
+       {"@VERDICT@", escaped(is_static(scene.setup) ? loads_in_words(*rows, summary, language)
+                                                    : verdict_in_words(ends, language))},
        {"@ONLY@",
         only.word.empty() ? "" : escaped(say_in(language, phrase_named(only.word), estimate_of(only)))},
        {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},

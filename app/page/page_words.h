@@ -47,6 +47,11 @@ inline constexpr JapaneseObstacle k_obstacles[] = {
     {planar::Obstacle::jump, "床の上下方向の速度が不連続である"},
 };
 
+// of loads that grow
+inline constexpr Phrase k_greatest_load{"Greatest load factor: {0:.4g}.", "最大荷重係数：{0:.4g}。"};
+inline constexpr Phrase k_load_hinges{" Plastic hinges: {0}.", "塑性ヒンジ：{0}か所。"};
+inline constexpr Phrase k_load_breaks{" Broken sections: {0}.", "破断した断面：{0}か所。"};
+
 inline constexpr Phrase k_diverged{"The computation broke off at {0} s: {1}", "計算は{0}秒で中断した：{1}"};
 
 /// A text of the page's controls. The page calls it by its name.

@@ -10,14 +10,16 @@ bool holds_on(const Edit& edit) {
 
 }  // namespace
 
-std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits) {
+std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits,
+                                 const std::function<bool(const LoggedEdit&)>& goes_on) {
   constexpr double k_of_one_drag = 0.5;  // s
   std::vector<EditMark> marks;
   for (const LoggedEdit& edit : edits) {
-    const bool same =
-        !marks.empty() && marks.back().last.edit.key == edit.edit.key &&
-        marks.back().last.edit.index == edit.edit.index && marks.back().last.branch == edit.branch &&
-        (holds_on(marks.back().last.edit) || edit.time - marks.back().last.time < k_of_one_drag);
+    const bool same = !marks.empty() && marks.back().last.edit.key == edit.edit.key &&
+                      marks.back().last.edit.index == edit.edit.index &&
+                      marks.back().last.branch == edit.branch &&
+                      (holds_on(marks.back().last.edit) ||
+                       edit.time - marks.back().last.time < k_of_one_drag || goes_on(edit));
     if (same)
       marks.back().last = edit;
     else

@@ -1,6 +1,7 @@
 // Changes of parameters as they are marked on the timeline.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "solver/run/history.h"
@@ -13,7 +14,9 @@ struct EditMark {
 };
 
 /// `edits` in order of their steps. Two of a branch belong together when no other edit stands between them
-/// and less than 0.5 s of the run, or the earlier one is a pull that goes on.
-std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits);
+/// and less than 0.5 s of the run, or the earlier one is a pull that goes on, or the later one `goes_on` with
+/// it, as known of a drag that was seen.
+std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits,
+                                 const std::function<bool(const LoggedEdit&)>& goes_on);
 
 }  // namespace topple::app

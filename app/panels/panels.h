@@ -71,6 +71,10 @@ class TiltHistory {
   RowPtr first_, last_;       // rows that it has begun and ended with
 };
 
+/// Greatest acceleration of the floor along an axis, m/s^2: of the rows, or where a peak that a single shake
+/// has in the scene lies between two of them, that one.
+double floor_peak(const std::vector<RowPtr>& rows, const std::vector<Shake>& shakes, double output_rate);
+
 /// Floor acceleration (statics: load factor) and tilt over time (statics: over the load path), with marks for
 /// events, edits and forks; dragging scrubs.
 /// `ghost`: the run that is drawn pale.

@@ -183,10 +183,13 @@ class Row {
         ImGui::GetStyle().ItemSpacing.x);
   }
 
-  void button(const Phrase& label, double value, const Phrase& tooltip) {
+  void button(const Phrase& label, double value, const Phrase& tooltip, bool enabled) {
     ImGui::PushID(io::edit_key(edit_).c_str());
+    ImGui::BeginDisabled(!enabled);
     if (ImGui::Button(say(label).c_str())) post_anew(Vec3(value, 0, 0));
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", say(tooltip).c_str());
+    ImGui::EndDisabled();
+    if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+      ImGui::SetTooltip("%s", say(tooltip).c_str());
     ImGui::PopID();
   }
 
@@ -265,7 +268,9 @@ void draw_type(const Parameter& of) {
   Row row = of.row();
   row.choice(say(k_type), k_type_about,
              [](int number) { return traits(static_cast<Shake::Kind>(number)).has_amplitude; });
-  row.button(k_shake_once, static_cast<int>(Shake::Kind::pulse), k_shake_once_about);
+  const bool ended = of.player.can_edit() && !of.player.is_live(of.player.shown_branch());
+  row.button(k_shake_once, static_cast<int>(Shake::Kind::pulse),
+             ended ? k_shake_once_ended : k_shake_once_about, !ended);
 }
 
 /// What is computed, below what is asked for.

@@ -15,6 +15,8 @@
 #include "render/scene/text_layout.h"
 #include "solver/body/model_level.h"
 #include "solver/io/edit/edit_text.h"
+#include "solver/model/accelerogram.h"
+#include "solver/model/excitation.h"
 
 namespace topple::app {
 namespace {
@@ -76,12 +78,42 @@ double peak(const std::vector<RowPtr>& rows, const Value& value) {
   return most;
 }
 
-void add_acceleration(ImDrawList& list, Lane lane, const std::vector<RowPtr>& rows, float label_left) {
+/// The greatest acceleration that a single shake is said to have along an axis, m/s^2; 0: none is said.
+double said_peak(const std::vector<Shake>& shakes, int axis) {
+  if (shakes.size() != 1 || shakes.front().building) return 0;
+  const Shake& shake = shakes.front();
+  if (traits(shake.kind).has_amplitude) return std::abs(shake.amplitude * shake.direction[axis]);
+  const auto& components = shake.record->components;
+  return components.size() == 1
+             ? std::abs(shake.scale * shake.record->peak * components.front().direction[axis])
+             : 0;
+}
+
+}  // namespace
+
+double floor_peak(const std::vector<RowPtr>& rows, const std::vector<Shake>& shakes, double output_rate) {
+  constexpr double k_least_missed = 1e-3;  // of the peak
+  const double turn = shakes.empty() ? 0 : std::min(highest_frequency(shakes.front()) / output_rate, 0.5);
+  const double missed = std::max(1 - std::cos(k_pi * turn), k_least_missed);
+  double most = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Value component = [k](const io::FrameRow& row) { return row.floor_acceleration[k]; };
+    const double seen = peak(rows, component), said = said_peak(shakes, k);
+    most = std::max(most, seen >= (1 - missed) * said ? std::max(seen, said) : seen);
+  }
+  return most;
+}
+
+namespace {
+
+void add_acceleration(ImDrawList& list, Lane lane, const Player& player, float label_left) {
+  const std::vector<RowPtr>& rows = player.way();
   const auto component = [](int k) {
     return [k](const io::FrameRow& row) { return row.floor_acceleration[k] / k_gal; };
   };
-  double most = k_least_gal;
-  for (int k = 0; k < 3; ++k) most = std::max(most, peak(rows, component(k)));
+  const double most =
+      std::max(k_least_gal,
+               floor_peak(rows, player.parameters().shakes, player.scene().setup.run.output_rate) / k_gal);
   lane.high = k_headroom * most;
   lane.low = -lane.high;
   list.AddLine({lane.left, lane.y(0)}, {lane.right, lane.y(0)}, theme().faint);
@@ -311,7 +343,8 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const T
         event.time, y, [&] { return mark.text(player, event); },
         [&](ImVec2 p) { mark.draw(list, p, size, colour); });
   }
-  for (const EditMark& mark : edit_marks(player.edits()))
+  for (const EditMark& mark :
+       edit_marks(player.edits(), [&](const LoggedEdit& edit) { return player.goes_on(edit); }))
     add(
         is_pull(mark) ? mark.first.time : mark.last.time, lane.top, [&] { return edit_text(player, mark); },
         [&](ImVec2 p) { add_edit_mark(list, p, size); });
@@ -374,7 +407,7 @@ void draw_timeline(Player& player, const Box& box, TiltHistory& tilts, const Gho
   if (is_static(player.scene().setup))
     add_load_factor(list, upper, player.way(), label_left);
   else
-    add_acceleration(list, upper, player.way(), label_left);
+    add_acceleration(list, upper, player, label_left);
   tilts.follow(player);
   add_tilts(list, lower, player, tilts, ghost, label_left);
   add_axis(list, lower, player.scene().setup, label_left);

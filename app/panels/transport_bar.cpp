@@ -121,9 +121,7 @@ void gap() {
 void choose_branch(Player& player) {
   const auto& branches = player.history().branches;
   if (branches.size() < 2) return;
-  const auto name = [&](std::int32_t id) {
-    return say(!player.replay() && id == player.status().branch ? k_branch_live : k_branch, id);
-  };
+  const auto name = [&](std::int32_t id) { return say(player.is_live(id) ? k_branch_live : k_branch, id); };
   const float width = 6.5f * ImGui::GetFrameHeight();
   flow(width);
   ImGui::SetNextItemWidth(width);

@@ -79,10 +79,10 @@ inline constexpr Phrase k_floor_sweep{"floor: sweep {0:.4g} to {1:.4g} Hz, {2:.4
 inline constexpr Phrase k_floor_pulse{"floor: pulse {0:g} s, {1:.4g} gal", "床：パルス {0:g} s、{1:.4g} gal"};
 inline constexpr Phrase k_floor_record{"floor: record {0:.3g} s, peak {1:.4g} gal",
                                        "床：加速度記録 {0:.3g} s、最大 {1:.4g} gal"};
-inline constexpr Phrase k_floor_record_since{
-    "floor: record {0:.3g} s, scaled to a peak of {1:.4g} gal since {2:.2f} s",
-    "床：記録波 {0:.3g} s、{2:.2f} s から最大 {1:.4g} gal に拡大"};
+inline constexpr Phrase k_floor_record_since{"floor: record {0:.3g} s, times {1:.3g} since {2:.2f} s",
+                                             "床：加速度記録 {0:.3g} s、{2:.2f} s から {1:.3g} 倍"};
 inline constexpr Phrase k_still_at{", still {0:.0f} gal", "（移行中、現在 {0:.0f} gal）"};
+inline constexpr Phrase k_still_times{", still times {0:.3g}", "（移行中、現在 {0:.3g} 倍）"};
 inline constexpr Phrase k_shake_from{", from {0:.4g} s on", "、{0:.4g} sから"};
 inline constexpr Phrase k_shake_over{", over since {0:.4g} s", "、{0:.4g} sに終了"};
 inline constexpr Phrase k_more_shakes{"{0}, and {1} more", "{0}、ほか{1}件"};
@@ -243,6 +243,9 @@ inline constexpr Phrase k_type{"type", "波形"};
 inline constexpr Phrase k_shake_once{"Shake once", "1回だけ揺らす"};
 inline constexpr Phrase k_shake_once_about{"A pulse from now on; of a sine, half of one period",
                                            "現時刻からパルスを加える。正弦波では半周期分"};
+inline constexpr Phrase k_shake_once_ended{
+    "The run has ended, so nothing would move any more.\nR goes back to its start.",
+    "計算が終了しているため、揺らしても動きません。\nR で先頭に戻れます。"};
 inline constexpr Phrase k_frequency{"frequency", "周波数"};
 inline constexpr Phrase k_amplitude{"amplitude", "加速度振幅"};
 inline constexpr Phrase k_direction{"direction", "加振方向"};

@@ -9,6 +9,7 @@
 #include <span>
 
 #include "app/picture/furnish_words.h"
+#include "app/picture/title_words.h"
 #include "app/picture/touching_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
@@ -99,19 +100,18 @@ constexpr ShakeWords k_shake_words[] = {
     {Shake::Kind::pulse, [](const Shake& s) { return say(k_floor_pulse, s.duration, s.amplitude / k_gal); }},
     {Shake::Kind::record,
      [](const Shake& s) {
-       const double peak = std::abs(s.scale) * s.record->peak / k_gal;
        const bool since = s.ramp.over > 0 && s.ramp.since > s.start;
-       return since ? say(k_floor_record_since, s.record->duration, peak, s.ramp.since)
-                    : say(k_floor_record, s.record->duration, peak);
+       return since ? say(k_floor_record_since, s.record->duration, s.scale,
+                          s.ramp.since)  // its peak may be past
+                    : say(k_floor_record, s.record->duration, std::abs(s.scale) * s.record->peak / k_gal);
      }},
 };
 
 /// Of an edit that has not come to its end.
 std::string change_in_words(const Shake& shake, double t) {
   if (shake.ramp.over == 0 || shake.ramp.share(t) == 1) return "";
-  const double now = traits(shake.kind).has_amplitude ? shake_amplitude(shake, t).norm()
-                                                      : std::abs(shake_scale(shake, t)) * shake.record->peak;
-  return say(k_still_at, now / k_gal);
+  return traits(shake.kind).has_amplitude ? say(k_still_at, shake_amplitude(shake, t).norm() / k_gal)
+                                          : say(k_still_times, shake_scale(shake, t));
 }
 
 std::string building_in_words(const Shake& shake) {
@@ -153,14 +153,22 @@ std::string when_in_words(const Shake& shake, double t) {
 
 }  // namespace
 
+std::string in_window_language(const std::string& title) {
+  const bool changed = title.ends_with(io::k_title_changed);
+  const std::string plain = title.substr(0, title.size() - (changed ? io::k_title_changed.size() : 0));
+  const auto* const known = ranges::find(title_words::k_titles, plain, &Phrase::english);
+  const std::string shown = known == std::end(title_words::k_titles) ? plain : say(*known);
+  return changed ? say(k_title_changed, shown) : shown;
+}
+
 std::string title_in_words(const io::Scene& scene, const Parameters& parameters, bool changed) {
   const Model& model = scene.setup.model;
   changed = changed || ranges::any_of(editable(model, parameters), [&](const auto& edited) {
               const auto& [key, index] = edited;
               return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
             });
-  return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, scene.title)
-                                                                : scene.title;
+  const std::string title = in_window_language(scene.title);
+  return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, title) : title;
 }
 
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,

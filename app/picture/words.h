@@ -10,6 +10,10 @@
 
 namespace topple::app {
 
+/// The title of a built-in scene, also of one whose values were set, in the language of the window; other
+/// titles as they are.
+std::string in_window_language(const std::string& title);
+
 /// The scene's title; with `parameters` that were changed since, or of a run that was `changed` on its way,
 /// "A cabinet under 190 gal (changed)".
 std::string title_in_words(const io::Scene& scene, const Parameters& parameters, bool changed = false);

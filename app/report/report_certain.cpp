@@ -135,12 +135,8 @@ std::string error(const ReportPage& page) {
     out += page.paragraph(page.say(words::k_error_parted, body.get<std::string>()), "notice");
   if (const ordered_json& balance = page.report().summary["energy"]["balance_error"]; !balance.is_null())
     out += page.paragraph(page.say(words::k_balance, short_shown(100 * balance.get<double>(), 2)));
-  const ordered_json& warnings = page.report().summary["warnings"];
-  if (warnings.empty()) return out;
-  out += page.paragraph(page.say(words::k_warnings)) + "<ul lang=\"en\">\n";
-  for (const ordered_json& warning : warnings)
-    out += "<li>" + escaped(warning.get<std::string>()) + "</li>\n";
-  return out + "</ul>\n";
+  return out +
+         page.list(words::k_warnings, page.report().summary["warnings"].get<std::vector<std::string>>());
 }
 
 }  // namespace

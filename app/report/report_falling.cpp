@@ -54,7 +54,7 @@ std::string outcome_table(const ReportPage& page) {
          body["first_uplift_s"].is_null() ? "\u2013" : shown(body["first_uplift_s"].get<double>(), 2),
          std::to_string(body["impacts"].get<int>()),
          with_error(body["peak_tilt_deg"], e["peak_tilt_deg"], 1, 2),
-         critical ? shown(*critical, 1) : "\u2013",
+         critical ? shown(*critical, 2) : "\u2013",
          with_error(body["peak_slide_m"], e["peak_slide_m"], 1e-3, 1)});
     if (stresses) rows.back().push_back(with_error(body["peak_stress_Pa"], e["peak_stress_Pa"], 1e6, 1));
   }
@@ -111,7 +111,7 @@ std::string tilt_figure(ReportPage& page) {
   if (!critical.empty() && std::ranges::max(critical) - std::ranges::min(critical) < k_same_angle &&
       most > k_far_below * critical.front()) {
     chart.levels = {critical.front()};
-    chart.level_label = page.text(words::k_critical_level, shown(critical.front(), 1));
+    chart.level_label = page.text(words::k_critical_level, shown(critical.front(), 2));
     chart.y_to = 1.15 * std::max(most, critical.front());
   }
   const std::string which =
@@ -129,8 +129,7 @@ std::string caption(const ReportPage& page, const KeyPicture& picture) {
     case KeyPicture::Kind::falling:
       return page.say(words::k_at_fall, time, page.name(picture.body), shown(picture.tilt, 0));
     case KeyPicture::Kind::most_tilted:
-      return page.say(words::k_at_most, time, page.name(picture.body),
-                      shown(picture.tilt, picture.tilt < 10 ? 2 : 0));
+      return page.say(words::k_at_most, time, page.name(picture.body), shown(picture.tilt, 2));
     case KeyPicture::Kind::end:
       break;
   }
@@ -219,6 +218,14 @@ std::string differ_unheld(const ReportPage& page, const ordered_json& without) {
   return names;
 }
 
+/// What the run with anchors is not warned of as well.
+std::vector<std::string> warned_without(const ReportPage& page, const ordered_json& without) {
+  const auto with = page.report().summary["warnings"].get<std::vector<std::string>>();
+  auto warnings = without["warnings"].get<std::vector<std::string>>();
+  std::erase_if(warnings, [&](const std::string& one) { return std::ranges::find(with, one) != with.end(); });
+  return warnings;
+}
+
 }  // namespace
 
 std::string anchors_section(ReportPage& page) {
@@ -252,6 +259,7 @@ std::string anchors_section(ReportPage& page) {
   out += page.table(head, rows);
   if (const std::string names = differ_unheld(page, without); !names.empty())
     out += page.paragraph(page.say(words::k_unheld_differ, names), "note");
+  out += page.list(words::k_warnings_without, warned_without(page, without));
   return page.section(words::k_anchors, out);
 }
 

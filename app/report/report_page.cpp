@@ -60,6 +60,14 @@ std::string first_of(const ReportPage& page, const std::vector<std::size_t>& fal
   return out;
 }
 
+/// Degrees, of what comes nearest to overturning: when it does. Of a body that has no angle of overturning
+/// its greatest.
+double told_tilt(const ReportPage& page, std::size_t body) {
+  const ordered_json& of = page.bodies()[body];
+  const std::optional<double>& critical = page.report().tilts[body].critical;
+  return critical ? of["peak_critical_share"].get<double>() * *critical : of["peak_tilt_deg"].get<double>();
+}
+
 std::string verdict(const ReportPage& page) {
   const std::vector<std::size_t> falls = fallen(page);
   const std::size_t count = page.bodies().size();
@@ -68,16 +76,15 @@ std::string verdict(const ReportPage& page) {
     const std::size_t most = nearest_to_falling(page);
     const ordered_json& body = page.bodies()[most];
     const std::optional<double>& critical = page.report().tilts[most].critical;
-    if (!critical)
-      return page.say(words::k_nothing_falls_far, page.name(most),
-                      shown(body["peak_tilt_deg"].get<double>(), 2));
+    const std::string tilt = shown(told_tilt(page, most), 2);
+    if (!critical) return page.say(words::k_nothing_falls_far, page.name(most), tilt);
     const auto share = body["peak_critical_share"].get<double>();
     const Setup& setup = page.report().scene->setup;
     const Phrase& said = share > 1 ? words::k_nothing_stays_over
                          : is_held(setup.model, setup.parameters, static_cast<int>(most))
                              ? words::k_nothing_falls_held
                              : words::k_nothing_falls;
-    out = page.say(said, page.name(most), shown(share * *critical, 2), shown(*critical, 2));
+    out = page.say(said, page.name(most), tilt, shown(*critical, 2));
     const ordered_json& e = page.report().summary["error_estimate"];
     const ordered_json tilt_error =
         e.contains("bodies") ? e["bodies"][most]["peak_tilt_deg"] : ordered_json();
@@ -91,6 +98,13 @@ std::string verdict(const ReportPage& page) {
   for (const std::size_t b : falls) out += page.say(words::k_falls, page.name(b), fall_time(page, b)) + " ";
   if (falls.size() < count) out += page.say(words::k_others_stay, count - falls.size(), count);
   return out;
+}
+
+/// The figure that verdict() tells of where nothing falls.
+std::string nearest_tile(const ReportPage& page) {
+  const std::size_t most = nearest_to_falling(page);
+  const Phrase& what = page.report().tilts[most].critical ? words::k_tilt_of_nearest : words::k_greatest_tilt;
+  return tile(shown(told_tilt(page, most), 2) + "°", page.say(what) + ": " + escaped(page.name(most)));
 }
 
 /// Whether some body overturns in some of the runs about the input only.
@@ -177,8 +191,7 @@ std::string result(const ReportPage& page) {
     out += tile(fall_time(page, falls[0]) + " s",
                 page.say(words::k_first_fall) + ": " + escaped(first_of(page, falls)));
   else if (!page.bodies().empty())
-    out += tile(shown(page.bodies()[most_tilted(page)]["peak_tilt_deg"].get<double>(), 2) + "°",
-                page.say(words::k_greatest_tilt) + ": " + escaped(page.name(most_tilted(page))));
+    out += nearest_tile(page);
   if (!report.scene->setup.parameters.shakes.empty()) {
     out += tile(short_shown(study::peak(report.motion) / k_gal) + " gal", page.say(words::k_peak_floor));
     const double intensity = study::instrumental_intensity(study::intensity_acceleration(report.motion));
@@ -198,6 +211,13 @@ std::string ReportPage::section(const Phrase& title, const std::string& content)
 
 std::string ReportPage::paragraph(const std::string& html, const char* kind) const {
   return (*kind ? fmt::format("<p class=\"{}\">", kind) : "<p>") + html + "</p>\n";
+}
+
+std::string ReportPage::list(const Phrase& head, const std::vector<std::string>& sentences) const {
+  if (sentences.empty()) return "";
+  std::string out = paragraph(say(head)) + "<ul lang=\"en\">\n";
+  for (const std::string& sentence : sentences) out += "<li>" + escaped(sentence) + "</li>\n";
+  return out + "</ul>\n";
 }
 
 std::string ReportPage::figure(const std::string& html, const std::string& caption) const {

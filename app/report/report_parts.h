@@ -45,6 +45,8 @@ class ReportPage {
   /// <section> with its number and name.
   std::string section(const Phrase& title, const std::string& content);
   std::string paragraph(const std::string& html, const char* kind = "") const;
+  /// English sentences below a head; nothing where there are none.
+  std::string list(const Phrase& head, const std::vector<std::string>& sentences) const;
   std::string figure(const std::string& html, const std::string& caption) const;
   /// Head and rows of cells in HTML; columns beyond the first are numbers, set to the right, when `numbers`.
   std::string table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows,

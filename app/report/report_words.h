@@ -66,6 +66,8 @@ inline constexpr Phrase k_figure_overturned{"bodies overturned", "転倒する�
 inline constexpr Phrase k_of{"{0} of {1}", "{0}/{1}体"};
 inline constexpr Phrase k_first_fall{"first overturning", "最初の転倒"};
 inline constexpr Phrase k_greatest_tilt{"greatest tilt", "最大傾斜角"};
+inline constexpr Phrase k_tilt_of_nearest{"tilt of what comes nearest to overturning",
+                                          "最も転倒に近い家具の傾斜角"};
 inline constexpr Phrase k_peak_floor{"peak floor acceleration", "床の最大加速度"};
 inline constexpr Phrase k_degree_figure{"JMA {0}", "震度{0}相当"};
 inline constexpr Phrase k_instrumental{"intensity of the floor motion, instrumental {0}",
@@ -364,6 +366,8 @@ inline constexpr Phrase k_error_failed{"The finer run failed ({0}); the error is
 inline constexpr Phrase k_balance{"Energy that nothing explains: {0} % of the largest energy exchanged.",
                                   "説明のつかないエネルギー：交換された最大エネルギーの{0} %。"};
 inline constexpr Phrase k_warnings{"The program warns:", "プログラムの警告（英語）："};
+inline constexpr Phrase k_warnings_without{"The program warns of the run without anchors:",
+                                           "固定なしの計算に対するプログラムの警告（英語）："};
 
 // assumptions
 inline constexpr Phrase k_assumptions{"What the model assumes", "モデルの仮定"};

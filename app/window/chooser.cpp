@@ -11,6 +11,7 @@
 #include "app/panels/demo.h"
 #include "app/panels/shell_words.h"
 #include "app/picture/furnish_words.h"
+#include "app/picture/words.h"
 #include "app/window/opening.h"
 #include "solver/io/document/scene_document.h"
 #include "solver/io/scene/scene.h"
@@ -78,7 +79,9 @@ void Chooser::filter() {
   const auto only = [&](const std::vector<Entry>& all) {
     std::vector<Entry> some;
     for (const Entry& entry : all)
-      if (lower(entry.source + " " + entry.title).find(wanted) != std::string::npos) some.push_back(entry);
+      if (lower(entry.source + " " + entry.title + " " + in_window_language(entry.title)).find(wanted) !=
+          std::string::npos)
+        some.push_back(entry);
     // names that begin so come first, then names that hold it, then titles
     std::ranges::stable_sort(some, {}, [&](const Entry& entry) { return lower(entry.source).find(wanted); });
     return some;
@@ -261,7 +264,7 @@ void Chooser::draw_card(const Entry& entry, bool selected, float width, const re
   const ImVec2 at = ImGui::GetCursorScreenPos(), end{at.x + width, at.y + height};
   if (ImGui::InvisibleButton("card", {width, height})) choose(entry);
   const bool hovered = ImGui::IsItemHovered();
-  if (hovered) ImGui::SetTooltip("%s", entry.title.c_str());
+  if (hovered) ImGui::SetTooltip("%s", in_window_language(entry.title).c_str());
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float round = 5;
   list.AddRectFilled(at, end, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg),
@@ -275,9 +278,9 @@ void Chooser::draw_card(const Entry& entry, bool selected, float width, const re
   const bool first = entry.source == k_demo_scene;
   add_line(list, fonts.small, {at.x + pad, corner.y + 0.45f * line}, width - 2 * pad,
            ImGui::GetColorU32(ImGuiCol_Text), entry.source + (first ? "  " + say(ww::k_begin_here) : ""));
-  const char* const title = entry.title.c_str();
-  const char* rest =
-      fonts.small->CalcWordWrapPositionA(1, title, title + entry.title.size(), width - 2 * pad);
+  const std::string words = in_window_language(entry.title);
+  const char* const title = words.c_str();
+  const char* rest = fonts.small->CalcWordWrapPositionA(1, title, title + words.size(), width - 2 * pad);
   const ImU32 quiet = ImGui::GetColorU32(ImGuiCol_TextDisabled);
   const float about = corner.y + 1.75f * line;
   list.AddText(fonts.small, line, {at.x + pad, about}, quiet, title, rest);

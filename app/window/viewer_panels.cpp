@@ -30,6 +30,29 @@ constexpr float k_most_legend = 0.3f;    // of the width
 constexpr float k_room_for_title = 16;   // lines
 constexpr float k_narrow_words = 0.3f;   // of the width: bodies stand beside words no wider
 constexpr float k_words_to_come = 1.6f;  // lines: bodies begin to rock
+constexpr float k_flat_legend = 3.2f;    // lines
+
+/// Words over the scene as they are written.
+struct SceneWords {
+  std::vector<std::pair<ImFont*, std::string>> lines;
+  float width = 0, height = 0;
+  bool whole = true;  ///< all have room
+};
+SceneWords lines_of(const std::vector<std::pair<ImFont*, std::string>>& said, float room, int most_lines,
+                    float most_height) {
+  SceneWords out;
+  for (const auto& [font, text] : said)
+    for (const std::string& line : render::wrapped(*font, text, room, most_lines)) {
+      if (out.height + 1.3f * font->FontSize > most_height) {
+        out.whole = false;
+        break;
+      }
+      out.lines.emplace_back(font, line);
+      out.width = std::max(out.width, render::text_width(*font, line));
+      out.height += std::round(1.3f * font->FontSize);
+    }
+  return out;
+}
 
 }  // namespace
 
@@ -42,18 +65,15 @@ void Viewer::draw_words(const io::FrameRow& row) {
   const float right = scene_.left + scene_.width, bottom = scene_.top + scene_.height;
   list.PushClipRect({scene_.left, scene_.top}, {right, bottom});
   const float margin = 14 * scale_, legend = std::min(190 * scale_, k_most_legend * scene_.width);
-  const float room = scene_.width - legend - 2 * margin, pad = 0.5f * margin;
-  std::vector<std::pair<ImFont*, std::string>> lines;
-  float width = 0, height = 0;
+  const float inner = right - legend, pad = 0.5f * margin;
+  render::LeftOut left_out;
+  const std::optional<render::OverlayBox> drawn = render::draw_legend_in(
+      list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
+      {"", inner, scene_.top + margin, right - margin, bottom - margin}, frame_.dark, left_out);
+  const float room = scene_.width - legend - 2 * margin;
+  std::vector<std::pair<ImFont*, std::string>> said;
   const bool low = scene_.height < k_room_for_title * fonts_.small->FontSize;
-  const auto add = [&](ImFont* font, const std::string& text) {
-    for (const std::string& line : render::wrapped(*font, text, room, low ? 1 : 2)) {
-      if (scene_.top + margin + height + 1.3f * font->FontSize > bottom) return;
-      lines.emplace_back(font, line);
-      width = std::max(width, render::text_width(*font, line));
-      height += std::round(1.3f * font->FontSize);
-    }
-  };
+  const auto add = [&](ImFont* font, const std::string& text) { said.emplace_back(font, text); };
   if (!low)
     add(fonts_.text, title_in_words(player_.scene(), player_.parameters_so_far(), player_.changed_so_far()));
   add(fonts_.small, instant_in_words(player_.scene().setup, row) + "   " +
@@ -71,6 +91,15 @@ void Viewer::draw_words(const io::FrameRow& row) {
     add(fonts_.small, say(furnish_words::k_ghost_before));
   else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_ && !frame_.ghost_tubes.empty())
     add(fonts_.small, say(k_ghost_is, *ghost));
+  const bool flat_legend = !drawn && !frame_.legend.quantity.empty();
+  const float most = bottom - scene_.top - margin, most_above = most - k_flat_legend * fonts_.small->FontSize;
+  SceneWords words = lines_of(said, room, 2, low && flat_legend ? most_above : most);
+  // Bodies stand beside words of that width. Where these have too little room in it, they take that of
+  // bodies; above a flat legend, where nothing would be left of bodies, they are cut.
+  if (low && !words.whole)
+    words = flat_legend ? lines_of(said, room, 1, most)
+                        : lines_of(said, scene_.width - (drawn ? legend : 0) - 2 * margin, 2, most);
+  const auto& [lines, width, height, whole] = words;
   float x = scene_.left + margin, y = scene_.top + margin;
   const float more = k_words_to_come * fonts_.small->FontSize;
   words_top_ = margin + width > k_narrow_words * scene_.width ? margin + height + more : 0;
@@ -80,11 +109,6 @@ void Viewer::draw_words(const io::FrameRow& row) {
                      line);
     y += std::round(1.3f * font->FontSize);
   }
-  const float inner = right - legend;
-  render::LeftOut left_out;
-  const std::optional<render::OverlayBox> drawn = render::draw_legend_in(
-      list, fonts_, frame_.legend, render::colour_map_for(frame_.legend, settings_.map, frame_.dark),
-      {"", inner, scene_.top + margin, right - margin, bottom - margin}, frame_.dark, left_out);
   std::optional<render::OverlayBox> flat;
   if (!drawn)
     flat = render::draw_flat_legend_in(
@@ -203,7 +227,8 @@ render::Image Viewer::picture_of_plots() {
   ImGui::NewFrame();
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const bool dark = std::exchange(window_is_dark(), false);  // it is written on white
-  list.AddText({10, std::round(0.5f * line)}, theme().text, player_.scene().title.c_str());
+  list.AddText({10, std::round(0.5f * line)}, theme().text,
+               in_window_language(player_.scene().title).c_str());
   draw_plot_lanes(list, player_, histories_, inspection_, {0, 2 * line, io.DisplaySize.x, height});
   window_is_dark() = dark;
   ImGui::Render();

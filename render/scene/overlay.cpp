@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Geometry>
-
 #include "render/scene/drawable.h"
 #include "render/scene/legend.h"
 #include "render/scene/overlay_parts.h"
@@ -66,16 +64,6 @@ float draw_note(const Layout& at, const std::string& note, std::vector<OverlayBo
   }
   boxes.push_back({"note", at.margin, top, at.margin + widest, bottom});
   return top;
-}
-
-// ---- labels
-
-/// px from the upper left corner of a picture of width x height; nothing behind the eye.
-std::optional<ImVec2> seen_at(const Camera& camera, const Float3& at, float width, float height) {
-  if (!drawable(at)) return std::nullopt;
-  const Eigen::Vector4f clip = camera.projection * camera.view * Eigen::Vector3f(at.data()).homogeneous();
-  if (!(clip.w() > 0) || !clip.allFinite()) return std::nullopt;
-  return ImVec2(width * (0.5f + 0.5f * clip.x() / clip.w()), height * (0.5f - 0.5f * clip.y() / clip.w()));
 }
 
 // ---- trace
@@ -211,39 +199,6 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
                 {column_left, at.margin, width - at.margin, note_top - 8 * unit, 0.44f * height}, boxes);
   }
   return boxes;
-}
-
-void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
-                 const OverlayBox& room, float lowest, std::span<const OverlayBox> taken) {
-  const float unit = fonts.text->FontSize / 17, pad = 3 * unit, away = 9 * unit;
-  const ImFont& font = *fonts.small;
-  std::vector<OverlayBox> placed(taken.begin(), taken.end());
-  for (const Label& label : frame.labels) {
-    const auto at = seen_at(camera, label.at, room.right - room.left, room.bottom - room.top);
-    if (!at || label.words.empty()) continue;
-    const float width = text_width(font, label.words) + 2 * pad, height = font.FontSize + 2 * pad;
-    if (width > room.right - room.left || height > lowest - room.top) continue;
-    OverlayBox box{"label", room.left + at->x + away, room.top + at->y - height / 2, 0, 0};
-    box.left = std::round(std::clamp(box.left, room.left, room.right - width));
-    box.top = std::round(std::clamp(box.top, room.top, lowest - height));
-    const auto overlaps = [&](const OverlayBox& other) {
-      return box.left < other.right && box.left + width > other.left && box.top < other.bottom &&
-             box.top + height > other.top;
-    };
-    for (auto other = placed.begin(); other != placed.end();)  // below those before it
-      if ((other = std::ranges::find_if(placed, overlaps)) != placed.end()) box.top = other->bottom + 1;
-    box.right = box.left + width;
-    box.bottom = box.top + height;
-    if (box.bottom > lowest) continue;
-    const float beside = (box.top + box.bottom) / 2;
-    if (std::abs(beside - room.top - at->y) > height)  // moved away from what it names
-      list.AddLine({room.left + at->x, room.top + at->y}, {box.left, beside}, colours(frame.dark).title,
-                   std::max(1.f, unit));
-    list.AddRectFilled({box.left, box.top}, {box.right, box.bottom}, colours(frame.dark).sheet, pad);
-    list.AddText(fonts.small, font.FontSize, {box.left + pad, box.top + pad}, colours(frame.dark).title,
-                 label.words.c_str());
-    placed.push_back(box);
-  }
 }
 
 }  // namespace topple::render

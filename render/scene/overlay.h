@@ -22,8 +22,8 @@ std::vector<OverlayBox> draw_overlay(ImDrawList& list, const OverlayFonts& fonts
                                      ColourMap map, float width, float height, LeftOut& left_out);
 
 /// Adds the frame's labels beside their places, as `camera` sees them in a picture that fills `room` (px; its
-/// name does not count). They stay above `lowest` and inside, and overlap neither each other nor `taken`;
-/// those without room are left out.
+/// name does not count). They stay above `lowest` and inside, and overlap neither each other nor `taken`, nor
+/// do lines to them; where there is room they keep off bodies. Those without room are left out.
 void draw_labels(ImDrawList& list, const OverlayFonts& fonts, const SceneFrame& frame, const Camera& camera,
                  const OverlayBox& room, float lowest, std::span<const OverlayBox> taken);
 

@@ -37,9 +37,8 @@ class Rewriting {
 
   SavedScene run(const Scene& scene) {
     take(scene.setup.parameters);
-    if (!changes_.empty() && !scene.title.empty() && !scene.title.ends_with(k_title_changed) &&
-        parse_toml(saved_.text, "scene").find("title"))
-      add({"title"}, written_text(scene.title + std::string(k_title_changed)));
+    if (scene.title.ends_with(k_title_changed) && parse_toml(saved_.text, "scene").find("title"))
+      add({"title"}, written_text(scene.title.substr(0, scene.title.size() - k_title_changed.size())));
     for (int round = 0;; ++round) {
       saved_.text = rewrite_toml(saved_.text, changes_);
       changes_.clear();

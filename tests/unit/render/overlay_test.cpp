@@ -191,6 +191,65 @@ TEST(Overlay, labels_stay_in_their_room_and_apart) {
   ImGui::DestroyContext();
 }
 
+/// Corners of all that is drawn of the frame's labels.
+std::vector<ImVec2> labels_of(const SceneFrame& frame, const Camera& camera, const OverlayBox& room,
+                              std::span<const OverlayBox> taken) {
+  ImGui::CreateContext();
+  ImGui::GetIO().DisplaySize = {room.right, room.bottom};
+  const OverlayFonts fonts = add_overlay_fonts(*ImGui::GetIO().Fonts, 720);
+  ImGui::GetIO().Fonts->Build();
+  ImGui::GetIO().IniFilename = nullptr;
+  ImGui::NewFrame();
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const int before = list.VtxBuffer.Size;
+  draw_labels(list, fonts, frame, camera, room, room.bottom, taken);
+  std::vector<ImVec2> drawn;
+  for (int i = before; i < list.VtxBuffer.Size; ++i) drawn.push_back(list.VtxBuffer[i].pos);
+  ImGui::EndFrame();
+  ImGui::DestroyContext();
+  return drawn;
+}
+
+// The picture is 1280 x 720, with 169 px for 1 m: 2.3 m are just left of the legend, 2.6 m under it.
+TEST(Overlay, a_label_whose_usual_side_is_taken_by_the_legend_goes_to_the_other_and_no_line_crosses_it) {
+  SceneFrame frame;
+  frame.labels.push_back({{0, 4, 1}, "front door"});
+  const OverlayBox room{"", 0, 0, 1280, 720}, legend{"legend", 1050, 0, 1280, 600};
+  const Camera camera = look_at({-10, 0, 1}, {0, 0, 1}, {0, 0, 1}, 1280.f / 720, 0.1f, 100);
+  const auto mirrored = [&](float y) {
+    frame.labels[0].at[1] = y;
+    return labels_of(frame, camera, room, std::span(&legend, 1));
+  };
+  for (const float y : {-2.3f, -2.6f, 2.3f}) {
+    const std::vector<ImVec2> points = mirrored(y);
+    ASSERT_FALSE(points.empty()) << y;
+    for (const ImVec2& p : points) EXPECT_LE(p.x, legend.left + 1) << y << ": " << p.x << ", " << p.y;
+  }
+}
+
+TEST(Overlay, a_label_keeps_off_a_body_beside_which_there_is_room) {
+  SceneFrame frame;
+  frame.labels.push_back({{0, 0, 1}, "aisle"});
+  const OverlayBox room{"", 0, 0, 1280, 720};
+  const Camera camera = look_at({-10, 0, 1}, {0, 0, 1}, {0, 0, 1}, 1280.f / 720, 0.1f, 100);
+  const auto bounds = [&] {
+    OverlayBox box{"", 1e9f, 1e9f, 0, 0};
+    for (const ImVec2& p : labels_of(frame, camera, room, {})) {
+      box.left = std::min(box.left, p.x), box.right = std::max(box.right, p.x);
+      box.top = std::min(box.top, p.y), box.bottom = std::max(box.bottom, p.y);
+    }
+    return box;
+  };
+  const OverlayBox alone = bounds();
+  EXPECT_GT(alone.left, 640);  // to the right of its place in the middle
+  // a sheet from there to the right, 0.6 m high
+  frame.panels.push_back({{{{0, -0.1f, 0.7f}, {0, -2, 0.7f}, {0, -2, 1.3f}, {0, -0.1f, 1.3f}}}, 0});
+  const OverlayBox beside = bounds();
+  EXPECT_LT(beside.right, 640);
+  frame.panels[0].body = k_no_body;  // a door
+  EXPECT_EQ(bounds().left, alone.left);
+}
+
 TEST(Overlay, ticks_are_round_and_inside) {
   const Ticks ticks = nice_ticks(0, 270, 5);
   EXPECT_EQ(ticks.values, (std::vector<double>{0, 100, 200}));

@@ -110,6 +110,7 @@ TEST_F(SummaryTest, bodies_that_were_computed_alike_share_a_line) {
   body["models"] = Json::array({{{"from_s", 0},
                                  {"model", "rigid"},
                                  {"reason", "it is asked for"},
+                                 {"integrator", body["integrator"]},
                                  {"error_of", "motion"},
                                  {"error_estimate", 0.01}}});
   s["bodies"] = Json::array();
@@ -144,6 +145,20 @@ TEST_F(SummaryTest, a_static_run_has_no_seconds) {
   const std::string table = summary_table(s);
   EXPECT_NE(table.find("of path   of path"), std::string::npos) << table;
   EXPECT_EQ(table.find("longer run"), std::string::npos) << table;
+}
+
+TEST_F(SummaryTest, of_loads_on_what_cannot_fall_no_tilt_is_told) {
+  Json s = summary(scene_, run_, "completed", 0);
+  s["analysis"] = "static";
+  s["static"] = Json::array();
+  EXPECT_NE(summary_table(s).find("peak tilt"), std::string::npos);
+  s["bodies"][0]["critical_tilt_deg"] = nullptr;
+  s["bodies"][0]["peak_stress_Pa"] = 354.97e6;
+  const std::string table = summary_table(s);
+  EXPECT_EQ(table.find("tilt"), std::string::npos) << table;
+  EXPECT_EQ(table.find("overturned"), std::string::npos) << table;
+  EXPECT_NE(table.find("peak stress\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("     354.97\n"), std::string::npos) << table;
 }
 
 TEST_F(SummaryTest, what_is_beyond_its_critical_angle_as_the_run_ends_may_come_back) {
@@ -255,12 +270,12 @@ TEST_F(SummaryTest, an_estimate_of_a_model_is_of_the_time_before_impacts) {
   // contacts that stand for a hard floor give, of which the estimate of a block knows nothing
   body["models"][0]["model"] = "planar";
   s["contact"]["stands_for_hard_floor"] = true;
-  EXPECT_NE(
-      summary_table(s).find("; but for how contacts give off from a frame by about 0.04 % until it lands"),
-      std::string::npos)
+  EXPECT_NE(summary_table(s).find("; not counting how far its contacts give way, it is off from a frame by "
+                                  "about 0.04 % until it lands"),
+            std::string::npos)
       << summary_table(s);
   s["contact"]["stands_for_hard_floor"] = false;
-  EXPECT_EQ(summary_table(s).find("but for how contacts give"), std::string::npos);
+  EXPECT_EQ(summary_table(s).find("contacts give way"), std::string::npos);
   // it has fallen before it becomes that
   body["overturn_time_s"] = 2;
   body["models"][0]["from_s"] = 2.5;

@@ -319,6 +319,21 @@ TEST_F(RunTest, a_scene_may_come_through_a_pipe) {
   }
 }
 
+TEST_F(RunTest, a_scene_is_described_with_what_is_set) {
+  const auto mass = [&](const std::vector<std::string>& set) {
+    std::vector<std::string> words{"info", "s.toml", "--json", "-"};
+    words.insert(words.end(), set.begin(), set.end());
+    const Ended ended = topple(words);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return Json::parse(ended.out)["bodies"][0]["mass_kg"].get<double>();
+  };
+  EXPECT_NEAR(mass({"--set", "cabinet.free.mass=50 kg"}), 50, 1e-9);
+  EXPECT_NEAR(mass({"--set", "cabinet.free.mass=50 kg", "--set", "cabinet.free.mass=60"}), 60, 1e-9);
+  expect_one_line({"info", "s.toml", "--set", "cabinet.free.mess=50"}, 2, "mess");
+  ASSERT_EQ(topple({"run", "s.toml", "-o", "a.h5", "--set", "run.duration=0.01"}).code, 0);
+  expect_one_line({"info", "a.h5", "--set", "run.duration=1"}, 2, "only a scene can be changed");
+}
+
 TEST_F(RunTest, overrides_are_part_of_the_recording) {
   ASSERT_EQ(
       topple({"run", "s.toml", "-o", "a.h5", "--set", "run.duration=0.1", "--set", "cabinet.free.mass=50 kg"})

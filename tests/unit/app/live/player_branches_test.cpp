@@ -33,6 +33,18 @@ TEST_F(PlayerTest, restart_keeps_the_sliders_and_is_a_branch_from_the_start) {
   expect_repeatable("live.h5", 2);
 }
 
+TEST_F(PlayerTest, a_branch_is_live_until_its_run_ends) {
+  start();
+  EXPECT_TRUE(player().is_live(0));
+  run_to_end();
+  EXPECT_FALSE(player().is_live(0));
+  player().scrub(0.2);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && player().can_edit(); }));
+  EXPECT_FALSE(player().is_live(0));
+  EXPECT_TRUE(player().is_live(1));
+}
+
 /// What a run of k_rocking from the start with other keys records.
 std::vector<io::FrameRow> rows_with(const std::vector<std::string>& overrides) {
   const auto scene = live_scene(k_rocking, overrides);

@@ -325,6 +325,15 @@ TEST_F(ExportPageTest, a_run_that_takes_long_is_replayed_only_and_the_page_says_
   EXPECT_NE(bytes_of("page.html").find("このページは再生のみ。1回の計算に約4秒かかり"), std::string::npos);
 }
 
+// 18.83: the portal's load when a hinge is at each of its four corners.
+TEST_F(ExportPageTest, of_loads_that_grow_the_greatest_is_told_and_no_tilt) {
+  ASSERT_EQ(topple({"export", "portal-pushover", "--page", "page.html"}).code, 0);
+  EXPECT_NE(bytes_of("page.html").find(">Greatest load factor: 18.83. Plastic hinges: 4.</p>"),
+            std::string::npos);
+  ASSERT_EQ(topple({"export", "portal-pushover", "--page", "page.html", "--lang", "ja"}).code, 0);
+  EXPECT_NE(bytes_of("page.html").find(">最大荷重係数：18.83。塑性ヒンジ：4か所。</p>"), std::string::npos);
+}
+
 TEST_F(ExportPageTest, the_title_of_a_run_that_was_edited_says_so_in_the_words_of_the_window) {
   const auto title = [](bool edited, const char* language) {
     record_block("block.h5", 0.1, edited);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "app/panels/edit_marks.h"
+#include "app/panels/panels.h"
 #include "app/picture/window_words.h"
 #include "solver/io/edit/edit_text.h"
+#include "solver/model/excitation.h"
 #include "unit/app/live.h"
 
 namespace topple::app {
@@ -69,6 +71,28 @@ TEST(ComputedWords, every_choice_has_a_word_in_japanese) {
     }
 }
 
+// Rows stand at 72 and 108 degrees of each of its turns; of a shake that is half as strong none comes near.
+TEST(FloorPeak, a_peak_between_rows_is_the_one_that_the_scene_names) {
+  const double rate = 100, amplitude = 7;
+  Shake shake;
+  shake.frequency = 10;
+  shake.amplitude = amplitude;
+  shake.direction = Vec3(0, 1, 0);
+  std::vector<RowPtr> rows;
+  for (int i = 0; i < 100; ++i) {
+    auto row = std::make_shared<io::FrameRow>();
+    row->floor_acceleration[1] = shake_acceleration(shake, i / rate).y();
+    rows.push_back(std::move(row));
+  }
+  double seen = 0;
+  for (const RowPtr& row : rows) seen = std::max(seen, std::abs(row->floor_acceleration[1]));
+  ASSERT_LT(seen, 0.96 * amplitude);
+  EXPECT_EQ(floor_peak(rows, {shake}, rate), amplitude);
+  shake.amplitude *= 2;
+  EXPECT_EQ(floor_peak(rows, {shake}, rate), seen);
+  EXPECT_EQ(floor_peak(rows, {}, rate), seen);
+}
+
 TEST(EditMarks, one_drag_is_one_mark) {
   const auto edit = [](double time, Edit::Key key, double value) {
     return LoggedEdit{0, static_cast<std::int64_t>(1000 * time), time, {key, 0, Vec3(value, 0, 0)}};
@@ -77,7 +101,8 @@ TEST(EditMarks, one_drag_is_one_mark) {
   const std::vector<LoggedEdit> edits{edit(0.5, amplitude, 1),  edit(0.52, amplitude, 2),
                                       edit(0.54, amplitude, 3), edit(0.56, friction, 0.4),
                                       edit(0.58, amplitude, 4), edit(1.5, amplitude, 5)};
-  const std::vector<EditMark> marks = edit_marks(edits);
+  const auto never = [](const LoggedEdit&) { return false; };
+  const std::vector<EditMark> marks = edit_marks(edits, never);
   ASSERT_EQ(marks.size(), 4u);
   EXPECT_EQ(marks[0].first.time, 0.5);
   EXPECT_EQ(marks[0].last.edit.value.x(), 3);
@@ -86,11 +111,35 @@ TEST(EditMarks, one_drag_is_one_mark) {
   EXPECT_EQ(marks[3].first.time, 1.5);  // another drag, a second later
   std::vector<LoggedEdit> branched{edit(0.5, amplitude, 1), edit(0.6, amplitude, 2)};
   branched[1].branch = 1;
-  EXPECT_EQ(edit_marks(branched).size(), 2u);  // what was done before one went on from there stays
+  EXPECT_EQ(edit_marks(branched, never).size(), 2u);  // what was done before one went on from there stays
   const std::vector<EditMark> pulls =
-      edit_marks({edit(1, pull, 5), edit(3, pull, 6), edit(3.1, pull, 0), edit(4, pull, 5)});
+      edit_marks({edit(1, pull, 5), edit(3, pull, 6), edit(3.1, pull, 0), edit(4, pull, 5)}, never);
   ASSERT_EQ(pulls.size(), 2u);  // a hand that keeps still pulls on
   EXPECT_EQ(pulls[0].last.time, 3.1);
+}
+
+TEST_F(ComputedTest, a_slider_that_is_held_still_in_a_drag_has_one_mark) {
+  start({"run.duration=3", "cabinet.free.model=rigid"});
+  const auto edit_at = [&](double time, double gal) {
+    player_->play();
+    ASSERT_TRUE(until([&] { return player_->time() >= time; }));
+    player_->pause();
+    player_->edit({Edit::Key::amplitude, 0, Vec3(gal * k_gal, 0, 0)});
+  };
+  const auto marks = [&] {
+    return edit_marks(player_->edits(), [&](const LoggedEdit& edit) { return player_->goes_on(edit); });
+  };
+  player_->set_speed(k_most_speed);
+  player_->begin_edit();
+  edit_at(0.2, 100);
+  edit_at(1, 120);
+  ASSERT_TRUE(until([&] { return player_->edits().size() == 2; }));
+  ASSERT_EQ(marks().size(), 1u);
+  EXPECT_EQ(marks()[0].last.edit.value.x(), 120 * k_gal);
+  player_->begin_edit();
+  edit_at(2, 90);
+  ASSERT_TRUE(until([&] { return player_->edits().size() == 3; }));
+  EXPECT_EQ(marks().size(), 2u);
 }
 
 }  // namespace

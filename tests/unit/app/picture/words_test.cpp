@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <set>
+
+#include "app/picture/title_words.h"
+#include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
@@ -45,6 +49,22 @@ TEST(Words, a_scene_whose_values_are_set_says_that_it_was_changed) {
             Titles("Two", "Two (changed)"));
 }
 
+TEST(Words, titles_of_built_in_scenes_are_in_the_language_of_the_window) {
+  std::set<std::string> titles;
+  for (const io::BuiltinScene& builtin : io::builtin_scenes())
+    titles.insert(io::load_scene(std::string(builtin.name)).title);
+  for (const Phrase& title : title_words::k_titles)
+    EXPECT_EQ(titles.erase(std::string(title.english)), 1u) << title.english;
+  EXPECT_EQ(titles, std::set<std::string>());
+  window_language() = Language::japanese;
+  const io::Scene scene = io::load_scene("cantilever", {"run.duration=1"});
+  const std::string changed = title_in_words(scene, scene.setup.parameters);
+  const std::string own = in_window_language("A cantilever of mine");
+  window_language() = Language::english;
+  EXPECT_EQ(changed, "先端に急に荷重がかかる片持ち梁（変更あり）");
+  EXPECT_EQ(own, "A cantilever of mine");
+}
+
 TEST(Words, of_many_all_stand_and_others_stand_beside_those_that_do_not) {
   const io::Scene scene = io::load_scene("classroom");
   const Model& model = scene.setup.model;
@@ -69,6 +89,16 @@ TEST(Words, a_shake_that_is_on_its_way_to_another_amplitude_says_what_it_is_now)
   EXPECT_EQ(shake_in_words(parameters, 0.1), "floor: 2 Hz, 200 gal, still 400 gal");
   EXPECT_EQ(shake_in_words(parameters, 0.1 + 0.5 / 8), "floor: 2 Hz, 200 gal, still 300 gal");
   EXPECT_EQ(shake_in_words(parameters, 0.1 + 0.5 / 4), "floor: 2 Hz, 200 gal");
+}
+
+// Its peak may have passed by then.
+TEST(Words, a_record_that_is_scaled_on_its_way_tells_the_factor_and_no_peak) {
+  const io::Scene scene = io::load_scene("near-fault");
+  Parameters parameters = scene.setup.parameters;
+  ASSERT_EQ(shake_in_words(parameters, 6), "floor: record 10 s, peak 339.3 gal");
+  apply({.key = Edit::Key::scale, .value = Vec3(0.5, 0, 0)}, scene.setup.model, 6, parameters);
+  EXPECT_EQ(shake_in_words(parameters, 6), "floor: record 10 s, times 0.5 since 6.00 s, still times 1");
+  EXPECT_EQ(shake_in_words(parameters, 9), "floor: record 10 s, times 0.5 since 6.00 s");
 }
 
 // A cabinet turns about the edge of its base by 30 degrees, which moves the middle of the base by b (1 - cos

@@ -83,6 +83,21 @@ TEST_F(ReportPageTest, anchors_are_compared_where_there_are_some) {
   EXPECT_TRUE(holds(page(Language::japanese), "固定具の有無による違い"));
 }
 
+TEST_F(ReportPageTest, what_the_run_without_anchors_is_warned_of_stands_beside_it) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  tell_of(scene);
+  report_.summary["warnings"] = {"both"};
+  report_.without_anchors = report_.summary;
+  EXPECT_FALSE(holds(page(), "warns of the run without anchors"));
+  (*report_.without_anchors)["warnings"].push_back("the stress in body \"box\" is beyond < all");
+  const std::string html = page();
+  EXPECT_TRUE(holds(html,
+                    "<p>The program warns of the run without anchors:</p>\n<ul lang=\"en\">\n"
+                    "<li>the stress in body &quot;box&quot; is beyond &lt; all</li>\n</ul>"));
+  EXPECT_LT(html.find("is beyond &lt; all"), html.find("How certain this is"));
+  EXPECT_TRUE(holds(page(Language::japanese), "固定なしの計算に対するプログラムの警告（英語）："));
+}
+
 // 50 kN/m and 2 kN, and what the summary says of the run.
 TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
   const io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
@@ -224,6 +239,29 @@ TEST_F(ReportPageTest, a_share_stands_with_its_interval) {
   report_.trials[0].finished = false;
   EXPECT_TRUE(holds(page(), "1 of 21 runs failed and are left out: with the input times "));
   EXPECT_TRUE(holds(page(), "8 of 20 runs"));
+}
+
+// One that leans farther is farther from its own critical angle: 0.54 of 20, 0.5 of 7.
+TEST_F(ReportPageTest, the_figure_at_the_top_is_the_one_that_the_sentence_tells) {
+  Json near = report_.summary["bodies"][0];
+  near["overturned"] = false;
+  near["overturn_time_s"] = near["first_beyond_critical_s"] = nullptr;
+  Json far = near;
+  near["name"] = "near", near["peak_tilt_deg"] = 0.5, near["peak_critical_share"] = 0.5 / 7;
+  far["name"] = "far", far["peak_tilt_deg"] = 0.54, far["peak_critical_share"] = 0.54 / 20;
+  report_.summary["bodies"] = {near, far};
+  report_.summary["error_estimate"]["bodies"] = {report_.summary["error_estimate"]["bodies"][0],
+                                                 report_.summary["error_estimate"]["bodies"][0]};
+  report_.tilts = {{.time = {0, 0.3}, .tilt = {0, 0.5}, .critical = 7},
+                   {.time = {0, 0.3}, .tilt = {0, 0.54}, .critical = 20}};
+  const std::string html = page();
+  EXPECT_TRUE(holds(html, "“near” comes nearest to it: it tilts by 0.50° of the 7.00° at which it would."));
+  EXPECT_TRUE(holds(html, "<b>0.50°</b><span>tilt of what comes nearest to overturning: near</span>"));
+  EXPECT_TRUE(holds(html, "<td>7.00</td>"));
+  EXPECT_TRUE(holds(html, "<td>20.00</td>"));
+  report_.tilts[0].critical = report_.tilts[1].critical = {};
+  EXPECT_TRUE(holds(page(), "“far” tilts most, by 0.54°."));
+  EXPECT_TRUE(holds(page(), "<b>0.54°</b><span>greatest tilt: far</span>"));
 }
 
 TEST_F(ReportPageTest, an_open_verdict_is_said_at_the_top_and_has_no_number) {

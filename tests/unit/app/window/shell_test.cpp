@@ -314,7 +314,7 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   const io::Scene saved = io::load_scene(path);
   EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(recent_files().front(), path);
-  EXPECT_EQ(saved.title, "A rocking cabinet for tests (changed)");
+  EXPECT_EQ(saved.title, "A rocking cabinet for tests");
   const auto proposal = [&] {
     shell_->save_dialog().open(shell_->session()->scene());
     frame();

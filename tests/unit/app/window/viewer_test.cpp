@@ -211,6 +211,29 @@ TEST_F(ViewerTest, a_box_takes_a_fixing_with_all_its_points_away_and_the_scene_c
   EXPECT_EQ(player_->parameters().anchors, (std::vector<bool>{true, true}));
 }
 
+TEST_F(ViewerTest, nothing_is_shaken_once_after_the_end_of_the_run) {
+  start();
+  const ImGuiWindow* const side = content("side");
+  const ImGuiID button = ImHashStr("Shake once", 0, ImHashStr("shake.1.type", 0, side->ID));
+  ImVec2 at{-1, -1};
+  for (float y = side->Pos.y + 5; y < side->Pos.y + side->Size.y && at.x < 0; y += 9) {
+    hover({side->Pos.x + 20, y});
+    if (ImGui::GetHoveredID() == button) at = ImGui::GetIO().MousePos;
+  }
+  ASSERT_GE(at.x, 0);
+  click(at);
+  ASSERT_TRUE(until([&] { return player_->edits().size() == 1; }));
+  press('Z', true);
+  ASSERT_TRUE(until([&] { return player_->edits().size() == 2; }));
+  player_->set_speed(k_most_speed);
+  press(k_space);
+  ASSERT_TRUE(until([&] { return player_->status().kind == LiveStatus::Kind::over; }));
+  click(at);
+  for (int i = 0; i < 5; ++i) frame();
+  EXPECT_EQ(player_->parameters().shakes[0].kind, Shake::Kind::sine);
+  EXPECT_EQ(player_->edits().size(), 2u);
+}
+
 TEST_F(ViewerTest, space_plays_and_pauses) {
   start();
   for (int i = 0; i < 3; ++i) type('[');  // it does not end before the second press

@@ -440,6 +440,24 @@ TEST_P(WindowText, is_read_in_tooltips_of_the_chooser) {
 }
 
 constexpr Language k_ja = Language::japanese, k_en = Language::english;
+
+/// Letters four steps larger than usual.
+class LargeLetters : public WindowText {};
+TEST_P(LargeLetters, cut_no_line_in_the_scene_that_has_room_for_it) {
+  start(std::make_shared<const io::Scene>(io::load_scene("classroom", {"run.duration=0.02"})));
+  for (int i = 0; i < 3; ++i) frame();
+  shown.clear();
+  listening = true;
+  frame();
+  listening = false;
+  const auto tells = [](const Shown& text) { return text.words.find("339.3 gal") != std::string::npos; };
+  EXPECT_TRUE(std::ranges::any_of(shown, tells));
+}
+INSTANTIATE_TEST_SUITE_P(Looks, LargeLetters,
+                         ::testing::Values(Look{1280, 720, {1.75, false, k_en}, "english"},
+                                           Look{1280, 720, {1.75, false, k_ja}, "japanese"}),
+                         [](const auto& look) { return std::string(look.param.name); });
+
 INSTANTIATE_TEST_SUITE_P(Looks, WindowText,
                          ::testing::Values(Look{1280, 720, {1, false, k_en}, "light"},
                                            Look{1280, 720, {2, false, k_en}, "large"},
