@@ -41,13 +41,15 @@ bool is_scene(const std::string& source) {
 
 int write_page(const ExportOptions& options, const io::Scene& scene, const std::string& file) {
   const io::Recording recording(file);
-  const std::string page =
-      page_of(scene, page_run(scene, recording), options.language, [] { return !interrupted(); });
+  const PageRun run = page_run(scene, recording);
+  const std::string page = page_of(scene, run, options.language, [] { return !interrupted(); });
   if (page.empty()) {
     log_message("interrupted; " + options.page + " is not written");
     return k_interrupted;
   }
   write_whole_file({options.page, options.force}, host::FileKind::html, page);
+  if (const std::string why = in_words(why_replay_only(scene, run), Language::english); !why.empty())
+    log_message(options.page + ": " + why);
   return k_done;
 }
 

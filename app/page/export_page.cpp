@@ -191,8 +191,12 @@ std::string estimate_of(const ReplayOnly& only) {
 }
 
 Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<BodyEnd>& ends,
-               const std::vector<PlaceOutcome>& hits, const ReplayOnly& only, Language language) {
-  Json files = Json::array();
+               const std::vector<PlaceOutcome>& hits, const ReplayOnly& only, const Json& summary,
+               Language language) {
+  Json files = Json::array(), loads;  // of a static run, of which no engine tells
+  if (is_static(scene.setup))
+    loads = {{"en", loads_in_words(rows, summary, Language::english)},
+             {"ja", loads_in_words(rows, summary, Language::japanese)}};
   for (const io::SceneFile& file : scene.files)
     files.push_back({{"name", file.name}, {"base64", base64(file.bytes)}});
   return {{"name", scene.name},
@@ -206,6 +210,7 @@ Json page_data(const io::Scene& scene, const PageRows& rows, const std::vector<B
           {"reason", only.word},
           {"estimate_s", estimate_of(only)},
           {"language", language == Language::japanese ? "ja" : "en"},
+          {"loads", std::move(loads)},
           {"no_engine", say_in(language, phrase_named("no_engine"))}};
 }
 
@@ -226,8 +231,13 @@ ReplayOnly why_replay_only(const io::Scene& scene, const PageRun& run) {
   const Json summary = summary_of(run);
   if (!summary.contains("wall_s") || !summary["wall_s"].is_number()) return {};
   const double seconds = summary["wall_s"].get<double>() * k_browser_factor;
-  if (seconds > k_most_live) return {"replay_only", seconds};
+  if (seconds > k_most_live)
+    return {scene.setup.parameters.want_stress ? "replay_stress" : "replay_only", seconds};
   return {};
+}
+
+std::string in_words(const ReplayOnly& only, Language language) {
+  return only.word.empty() ? "" : say_in(language, phrase_named(only.word), estimate_of(only));
 }
 
 bool can_make_pages() {
@@ -252,18 +262,16 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
   std::string title = scene.title.empty() ? scene.name : scene.title;
   if (run.edited && !title.ends_with(io::k_title_changed))
     title = say_in(language, window_words::k_title_changed, title);
-  return filled(
-      page_template(),
-      {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
-       {"@TITLE@", escaped(title)},
-       {"@STILLS@", stills(scene, run, *rows)},
-       {"@VERDICT@", escaped(is_static(scene.setup) ? loads_in_words(*rows, summary, language)
-                                                    : verdict_in_words(ends, language))},
-       {"@ONLY@",
-        only.word.empty() ? "" : escaped(say_in(language, phrase_named(only.word), estimate_of(only)))},
-       {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
-       {"@VERSION@", TOPPLE_VERSION},
-       {"@DATA@", script_json(page_data(scene, *rows, ends, hits, only, language))}});
+  return filled(page_template(),
+                {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
+                 {"@TITLE@", escaped(title)},
+                 {"@STILLS@", stills(scene, run, *rows)},
+                 {"@VERDICT@", escaped(is_static(scene.setup) ? loads_in_words(*rows, summary, language)
+                                                              : verdict_in_words(ends, language))},
+                 {"@ONLY@", escaped(in_words(only, language))},
+                 {"@NOSCRIPT@", escaped(say_in(language, phrase_named("no_engine")))},
+                 {"@VERSION@", TOPPLE_VERSION},
+                 {"@DATA@", script_json(page_data(scene, *rows, ends, hits, only, summary, language))}});
 }
 
 std::string in_frame(const std::string& page, const std::string& title, int height) {

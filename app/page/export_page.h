@@ -31,10 +31,13 @@ PageRun page_run(const io::Scene& scene, const io::Recording& recording);
 
 /// Why a page cannot be live; empty word: it can. `seconds`: of a run in a browser.
 struct ReplayOnly {
-  std::string_view word;  ///< "replay_only", "replay_edits", "replay_static": of page_words.h
+  std::string_view
+      word;  ///< "replay_only", "replay_stress", "replay_edits", "replay_static": of page_words.h
   double seconds = 0;
 };
 ReplayOnly why_replay_only(const io::Scene& scene, const PageRun& run);
+/// A sentence; empty where the page is live.
+std::string in_words(const ReplayOnly& only, Language language);
 
 /// False when this program was built without emscripten, which no page can do without.
 bool can_make_pages();

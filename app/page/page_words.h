@@ -98,6 +98,11 @@ inline constexpr Named k_all[] = {
     {"replay_only",
      {"This page replays only: a run takes about {0} s here, more than the 3 s that a page may take.",
       "このページは再生のみ。1回の計算に約{0}秒かかり、ページでの上限3秒を超える。"}},
+    {"replay_stress",
+     {"This page replays only: a run takes about {0} s here, more than the 3 s that a page may take. Without "
+      "stresses, with run.want = [\"motion\"], it takes less.",
+      "このページは再生のみ。1回の計算に約{0}秒かかり、ページでの上限3秒を超える。応力なし"
+      "（run.want = [\"motion\"]）ならより短い。"}},
     {"replay_edits",
      {"This page replays only: parameters were changed while it ran.",
       "このページは再生のみ。計算中にパラメーターを変更した記録である。"}},

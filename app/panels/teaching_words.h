@@ -214,10 +214,12 @@ inline constexpr Phrase k_violent_impact{
     "in.",
     "反対側の縁が床に衝突し、エネルギーを失います。衝突のたびに床から受けたエネルギーの一部が失われます。"};
 inline constexpr Phrase k_violent_end{
-    "This is how the cabinet without a wall stands now. Compare its peak tilt with the slow shaking: the "
-    "line of the velocity criterion rises with the frequency. The one before a wall is thrown back by it.",
-    "壁のない書庫の現在の状態です。ゆっくりした揺れの最大傾斜と比べてください。速度の判定基準の線は周波数と"
-    "ともに上がります。壁際の書庫は壁に跳ね返されます。"};
+    "This is how the cabinet without a wall stands now. This shake is as far beyond the line of the velocity "
+    "criterion as the slow one: the line says what may overturn, not what does. Here the push turned round "
+    "in time. The one before a wall is thrown back by it.",
+    "壁のない書庫の現在の状態です。この揺れも、ゆっくりした揺れと同じくらい速度の判定基準を超えていますが、"
+    "基準は転倒の可能性を示すだけです。今回は押す向きが間に合って変わりました。壁際の書庫は壁に跳ね返されます"
+    "。"};
 inline constexpr Phrase k_did_not_come{
     "The run ended before this came about. The scene, or the parameters as they are now, differ from those "
     "the demo "

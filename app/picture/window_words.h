@@ -30,8 +30,8 @@ using namespace model_words;
 // how bodies and anchors stand
 inline constexpr Phrase k_tilted{"tilt {0:.1f}°", "傾斜 {0:.1f}°"};
 inline constexpr Phrase k_fallen{"fallen, tilt {0:.0f}°", "転倒、傾斜 {0:.0f}°"};
-inline constexpr Phrase k_toppling{"toppling, tilt {0:.1f}° (critical {1:.1f}°)",
-                                   "転倒中、{0:.1f}°（限界 {1:.1f}° 超過）"};
+inline constexpr Phrase k_beyond{"beyond critical, tilt {0:.1f}° (critical {1:.1f}°)",
+                                 "限界超過、{0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°)",
                                  "傾いて静止、{0:.1f}°（限界 {1:.1f}° 超過）"};
 inline constexpr Phrase k_leaning{"leans {0:.1f}° of {1:.1f}°", "傾斜 {0:.1f}°（限界 {1:.1f}°）"};
@@ -46,7 +46,7 @@ inline constexpr Phrase k_other_stands{"1 other stands", "ほか1体は直立"};
 inline constexpr Phrase k_others_stand{"{0} others stand", "ほか{0}体は直立"};
 inline constexpr Phrase k_others{"{0} others: {1}", "ほか{0}体：{1}"};
 inline constexpr Phrase k_count_fallen{"{0} fallen", "転倒 {0}"};
-inline constexpr Phrase k_count_toppling{"{0} toppling", "転倒中 {0}"};
+inline constexpr Phrase k_count_beyond{"{0} beyond critical", "限界超過 {0}"};
 inline constexpr Phrase k_count_tipped{"{0} tipped", "傾いて静止 {0}"};
 inline constexpr Phrase k_count_leaning{"{0} leaning", "傾斜 {0}"};
 inline constexpr Phrase k_count_standing{"{0} standing", "直立 {0}"};

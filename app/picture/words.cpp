@@ -36,7 +36,7 @@ using namespace window_words;
 
 constexpr double k_flies = 0.2;  // m/s: what nothing touches and moves faster is in the air
 
-enum class Stance { fallen, toppling, tipped, leaning, standing };
+enum class Stance { fallen, beyond, tipped, leaning, standing };
 
 bool moves_faster(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t body,
                   double speed) {
@@ -50,7 +50,7 @@ Stance stance(const Model& model, const Vec3& gravity, const io::FrameRow& row, 
       tilt > k_lying && (tilt > k_surely_lying || !moves_faster(model, gravity, row, body, k_fall));
   return lies ? Stance::fallen
          : tilt > critical
-             ? (moves_faster(model, gravity, row, body, k_at_rest) ? Stance::toppling : Stance::tipped)
+             ? (moves_faster(model, gravity, row, body, k_at_rest) ? Stance::beyond : Stance::tipped)
          : tilt > k_upright ? Stance::leaning
                             : Stance::standing;
 }
@@ -73,15 +73,25 @@ double slip(const Model& model, const io::FrameRow& row, std::size_t index) {
   return (middle - body.base_centre).head<2>().norm();
 }
 
-/// Moves, and nothing touches or holds it.
+/// Moves, is off all planes, and nothing touches or holds it: what trembles on an edge bears nothing at
+/// times.
 bool is_in_the_air(const Model& model, const Vec3& gravity, const io::FrameRow& row, std::size_t index) {
+  constexpr double k_off = 5e-3;  // m
   const Body& body = model.bodies[index];
   const int planes = static_cast<int>(model.planes.size());
+  const auto is_off = [&](const ContactPoint& point) {
+    const std::size_t at = 3 * static_cast<std::size_t>(point.node);
+    const Vec3 x(row.position[at], row.position[at + 1], row.position[at + 2]);
+    return ranges::all_of(model.planes, [&](const Plane& plane) {
+      return plane.normal.dot(x - plane.point) - point.width / 2 > k_off;
+    });
+  };
+  const auto first = model.contact_points.begin() + body.first_contact_point;
   const auto is_its = [&](int node) { return model.node_body[node] == static_cast<int>(index); };
   return row.knows_contacts && moves_faster(model, gravity, row, index, k_flies) &&
          !any_force(row.contact_force, body.first_contact_point * planes, body.contact_point_count * planes,
                     3) &&
-         !touches_another(body, row) &&
+         std::all_of(first, first + body.contact_point_count, is_off) && !touches_another(body, row) &&
          ranges::none_of(model.supports, [&](const Support& one) { return is_its(one.node); }) &&
          ranges::none_of(model.anchors, [&](const Anchor& one) {
            return one.body == static_cast<int>(index) || one.other.body == static_cast<int>(index);
@@ -129,7 +139,7 @@ double share_of_critical(const io::FrameRow& row, std::size_t body) {
 std::string others_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,
                             std::span<const std::size_t> others) {
   static constexpr std::pair<Stance, const Phrase&> k_stances[] = {{Stance::fallen, k_count_fallen},
-                                                                   {Stance::toppling, k_count_toppling},
+                                                                   {Stance::beyond, k_count_beyond},
                                                                    {Stance::tipped, k_count_tipped},
                                                                    {Stance::leaning, k_count_leaning},
                                                                    {Stance::standing, k_count_standing}};
@@ -182,8 +192,8 @@ std::string body_in_words(const Model& model, const Vec3& gravity, const io::Fra
     case Stance::fallen:
       line += say(k_fallen, tilt);
       break;
-    case Stance::toppling:
-      line += say(k_toppling, tilt, critical);
+    case Stance::beyond:
+      line += say(k_beyond, tilt, critical);
       break;
     case Stance::tipped:  // at the start everything is at rest
       line += row.step == 0 ? say(k_tilted, tilt) : say(k_tipped, tilt, critical);

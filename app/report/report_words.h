@@ -150,15 +150,15 @@ inline constexpr Phrase k_table_note{
     "Slide: travel of the middle of the base along the floor or the piece that it stands on. Uplift: one "
     "side of the base "
     "carries less than "
-    "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated numerical error, "
-    "section {2}.",
+    "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated error of the time "
+    "integration alone, section {2}.",
     "転倒：傾斜角が転倒限界角（載っている物を含めた重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らな"
     "いこと。限界角は、それに最も"
     "近づいた時刻に傾いていた側の値（最大傾斜角の時刻とは異なることがある。傾斜角が{1}"
     "°未満の場合は最も近い縁の値）。すべり："
     "床または載っている家具に対する底面中心の移動量。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
-    "±は推定数値誤差（第{2}節）。"};
+    "±は時間積分のみの推定誤差（第{2}節）。"};
 inline constexpr Phrase k_stress_note{
     "Stresses are elastic: the scene's material does not yield, so that impacts reach values at which a real "
     "one would flow or break.",

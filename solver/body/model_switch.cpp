@@ -230,12 +230,13 @@ bool ModelSwitch::may_descend_to(const Switching& on, ModelLevel level, int b, d
   const BodyState s = reduce(on.model, on.state, b, level);
   const double held =
       traits(level).has_modes ? (body.elastic->frequency * s.amplitude).square().sum() / 2 : 0;
-  if (!(strain - held < negligible(body, on.parameters, on.state)) || is_falling(body, on.parameters, s))
-    return false;
-  if (!traits(level).has_modes) return true;
+  if (is_falling(body, on.parameters, s)) return false;
+  const double lost = negligible(body, on.parameters, on.state);
+  if (!traits(level).has_modes) return strain - held < lost;
   ReducedBody& elastic = on.parts.reduced(on.state, b);
   elastic.remember(on.state.anchors);
   elastic.find_contacts(on.now, s, on.state.stick);
+  if (!(strain - held - elastic.residual_strain(s) < lost)) return false;
   const double allowed = on.parameters.models[b] == BodyModel::automatic ? k_soon * on.parameters.accuracy
                                                                          : std::numeric_limits<double>::max();
   return elastic_estimate(on.model, on.parameters, s, elastic, b).error <= allowed;
@@ -255,13 +256,10 @@ LevelChoice ModelSwitch::choose(const Switching& on, int b) {
     const double strain = strain_energy(model, b, parts.sections);
     const bool quiet = strain < k_much * negligible(model.bodies[b], parameters, state) &&
                        !is_bent(model, state, b) && yield_ratio(model, b, parts.sections) < k_calm_yield;
-    const bool ends = quiet && s.calm_since >= 0 && state.time - s.calm_since >= k_calm_for;
-    if (!quiet) s.calm_since = -1;
-    if (quiet && (s.calm_since < 0 || ends)) {
-      const bool calm = may_descend_to(on, base.level, b, strain);
-      if (calm && ends) return {base.level, LevelReason::calm};
-      s.calm_since = calm ? state.time : -1;
-    }
+    const bool calm = quiet && may_descend_to(on, base.level, b, strain);
+    if (calm && s.calm_since >= 0 && state.time - s.calm_since >= k_calm_for)
+      return {base.level, LevelReason::calm};
+    if (!calm || s.calm_since < 0) s.calm_since = calm ? state.time : -1;
     return {s.level, s.reason};
   }
   const bool automatic = parameters.models[b] == BodyModel::automatic;

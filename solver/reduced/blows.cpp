@@ -8,7 +8,7 @@
 namespace topple {
 namespace {
 
-constexpr double k_blow = 4;  // error of stresses over the ratio of stiffnesses
+constexpr double k_blow = 7.5;  // error of stresses over the ratio of stiffnesses, of what modes leave out
 
 }  // namespace
 
@@ -51,7 +51,7 @@ double ReducedBody::speed_bound(const BodyState& s) const {
 }
 
 double ReducedBody::blow_error(const ContactLaw& law, bool on_base) const {
-  return std::min(1.0, k_blow * contacts_.stiffness(law) * (on_base ? base_give_ : greatest_give_));
+  return std::min(1.0, k_blow * contacts_.stiffness(law) * (on_base ? base_beyond_ : greatest_beyond_));
 }
 
 double ReducedBody::blow_error(const ContactLaw& law, const BodyState& s, double speed, bool on_base) const {

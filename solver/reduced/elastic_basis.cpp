@@ -185,9 +185,10 @@ std::shared_ptr<const ElasticBasis> elastic_basis(const Model& model, int index)
   residual -= mass_all * (all.transpose() * residual).eval();
   for (int c = 0; c < residual.cols(); ++c) lu.solve(residual.col(c).data());
   residual -= all * (mass_all.transpose() * residual).eval();
-  basis->give.resize(3 * n);
-  for (int i = 0; i < n; ++i) basis->give.segment<3>(3 * i) = residual.block<3, 3>(6 * i, 3 * i).diagonal();
   complete(model, body, *basis);
+  basis->beyond = basis->residual_stress.cwiseQuotient(basis->rest_stress);
+  for (int i = 0; i < n; ++i)
+    basis->beyond.segment<3>(3 * i).array() *= residual.block<3, 3>(6 * i, 3 * i).diagonal().array();
   return basis;
 }
 

@@ -17,14 +17,15 @@ struct ElasticBasis {
   Eigen::MatrixXd residual_shape;    ///< 6 nodes x 3 nodes, m/N, rad/N: static deflection by a unit
                                      ///< force on a node of the free body, less that of the modes
   Eigen::MatrixXd residual_section;  ///< 6 elements x 3 nodes, N and N m per newton
-  Eigen::VectorXd give;              ///< 3 nodes, m/N: how far a unit force deflects its own node beyond the
-                                     ///< free modes, whatever took the place of some (with_attachments)
   Eigen::VectorXd mode_yield;        ///< modes: greatest sqrt(f + 1) at ends of elements per amplitude
   Eigen::VectorXd residual_yield;    ///< 3 nodes: likewise per newton
   Eigen::VectorXd mode_stress;       ///< modes: greatest equivalent_stress there per amplitude, Pa
   Eigen::VectorXd residual_stress;   ///< 3 nodes: likewise per newton
   Eigen::VectorXd rest_stress;       ///< 3 nodes: likewise, of the free body under that force alone at rest
-  Eigen::VectorXd mode_rotation;     ///< modes: greatest rotation of a node per amplitude, rad
+  Eigen::VectorXd beyond;  ///< 3 nodes, m/N: how far a unit force deflects its own node beyond the free
+                           ///< modes, whatever took the place of some (with_attachments), times the
+                           ///< share of rest_stress that lies beyond them
+  Eigen::VectorXd mode_rotation;  ///< modes: greatest rotation of a node per amplitude, rad
 };
 
 /// None when the body has supports, or nodes without mass or inertia. It is that of an earlier body which is

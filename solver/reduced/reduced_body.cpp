@@ -59,12 +59,13 @@ ReducedBody::ReducedBody(const Model& model, int body)
   const Body& own = model.bodies[body];
   for (int p = own.first_contact_point; p < own.first_contact_point + own.contact_point_count; ++p) {
     const int node = node_of(p) - own.first_node;
-    const Vec3 give = basis_->give.segment<3>(3 * node), stress = basis_->rest_stress.segment<3>(3 * node);
+    const Vec3 stress = basis_->rest_stress.segment<3>(3 * node),
+               beyond = basis_->beyond.segment<3>(3 * node);
     greatest_shape_ = std::max(greatest_shape_, basis_->shape.middleRows<3>(6 * node).norm());
-    greatest_give_ = std::max(greatest_give_, give.maxCoeff());
+    greatest_beyond_ = std::max(greatest_beyond_, beyond.maxCoeff());
     greatest_stress_ = std::max(greatest_stress_, stress.maxCoeff());
     if (ranges::find(own.base_points, p) == own.base_points.end()) continue;
-    base_give_ = std::max(base_give_, give.z());
+    base_beyond_ = std::max(base_beyond_, beyond.z());
     base_stress_ = std::max(base_stress_, stress.z());
   }
 }
@@ -525,6 +526,16 @@ void ReducedBody::add_motion_of_contacts(const BodyState& s, Eigen::VectorXd& u)
     u.segment<3>(6 * i) += shift + turn.cross(arm(i));
     u.segment<3>(6 * i + 3) += turn;
   }
+}
+
+double ReducedBody::residual_strain(const BodyState& s) const {
+  double work = 0;
+  each_force(s, [&](int i, const Vec3& f) {
+    each_force(s, [&](int j, const Vec3& g) {
+      work += f.dot(basis_->residual_shape.block<3, 3>(6 * i, 3 * j) * g);
+    });
+  });
+  return work / 2;
 }
 
 void ReducedBody::add_residual(const BodyState& s, State& state) const {

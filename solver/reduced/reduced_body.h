@@ -119,6 +119,8 @@ class ReducedBody {
   /// Section forces of the body's elements at `s`, on a level with stresses, under the forces found last,
   /// into those of the model.
   void section_forces(const BodyState& s, std::vector<SectionForces>& sections);
+  /// J, of what the forces found last deflect it statically beyond the modes.
+  double residual_strain(const BodyState& s) const;
   /// Adds to the nodes of `state` what the forces found last deflect them statically beyond the modes.
   void add_residual(const BodyState& s, State& state) const;
   /// Whether a contact found last, of a point that is not of the base, has a local spring (body_contacts.h)
@@ -134,8 +136,9 @@ class ReducedBody {
   /// Upper bound of the speeds of its points, m/s.
   double speed_bound(const BodyState& s) const;
   /// Estimated error of the stresses that a blow raises, on its base from below or, not `on_base`, anywhere,
-  /// as a share of them: four times the greatest ratio of a contact's stiffness to that of the point which
-  /// the modes leave out, at most 1. Measured (assets/guide/models.md).
+  /// as a share of them: 7.5 times the greatest ratio of a contact's stiffness to that of the point which the
+  /// modes leave out, times the share of the stress at rest under a force there that they leave out, at most
+  /// 1. Measured (assets/guide/models.md).
   double blow_error(const ContactLaw& law, bool on_base) const;
   /// The same of a blow at `speed`, m/s, as a share of the greatest stress so far: what it raises is that at
   /// rest under its force v sqrt(k m). 0 where twice as much beside the present stresses makes no new peak.
@@ -213,7 +216,8 @@ class ReducedBody {
   const int body_;
   const double mass_, reach_, least_inertia_;
   const PackMat3 inertia_, inverse_inertia_;  // material axes
-  double base_give_ = 0, greatest_give_ = 0;  // m/N, ElasticBasis::give of points of the base along z, of all
+  // m/N, ElasticBasis::beyond, of points of the base along z, of all
+  double base_beyond_ = 0, greatest_beyond_ = 0;
   double base_stress_ = 0, greatest_stress_ = 0;  // Pa/N, ElasticBasis::rest_stress, likewise
   double greatest_shape_ = 0;  // 1/sqrt(kg), norm of the displacements of a point in all modes
   std::shared_ptr<const ElasticBasis> basis_;

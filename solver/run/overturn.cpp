@@ -402,8 +402,15 @@ void Outcome::observe_sides(const Model& model, const State& state, double weigh
               .since = state.time,
               .vertical = o.vertical};
     if (!side.open) continue;
-    if (!side.counts && !side.borne_otherwise && !o.beyond_since &&
-        (o.vertical - side.vertical).norm() > k_uplift_angle) {
+    // or is higher from the start on; a corner that trembles while the body tips over the next side is not
+    const auto lifts = [&] {
+      const auto& corners = model.bodies[b].support_polygon;
+      const Vec3 along = corners[(i + 1) % corners.size()] - corners[i],
+                 outward = Vec3(along.y(), -along.x(), 0).normalized(), turned = o.vertical - side.vertical;
+      return turned.norm() > k_uplift_angle &&
+             std::max(outward.dot(turned), outward.dot(o.vertical)) > k_uplift_angle;
+    };
+    if (!side.counts && !side.borne_otherwise && !o.beyond_since && lifts()) {
       side.counts = true;
       if (!o.first_uplift) o.first_uplift = side.since;
       add(Event::Kind::uplift, side.since);

@@ -201,15 +201,15 @@ void Run::observe_stresses_since(double start) {
   }
 }
 
-// Of an elastic body they are found only where they may be more than before.
+// Of an elastic body they are found only where they may be more than before. Its state's peak does not know
+// the times within steps, which go by what is recorded, and is a checkpoint's own.
 void Run::observe_stresses() {
   const std::vector<SectionForces>& sections =
       path_ ? view(now_.state, now_acting_).sections : section_forces(workspace_);
   for (std::size_t b = 0; b < now_.state.bodies.size(); ++b) {
     const LevelTraits& level = traits(now_.state.bodies[b].level);
     const BodyOutcome& o = now_.outcome.bodies()[b];
-    double& peak =
-        now_.state.bodies[b].peak_stress;  // that of o knows times within steps, and none before it
+    double& peak = now_.state.bodies[b].peak_stress;
     const int body = static_cast<int>(b);
     if (!level.has_stresses) continue;
     if (level.has_modes) {
@@ -219,7 +219,8 @@ void Run::observe_stresses() {
       find_section_forces(now_.state, body, workspace_);
     }
     const double greatest = now_.outcome.observe_stresses(setup_->model, body, sections);
-    if (now_.state.time > now_.counted_from) peak = std::max(peak, greatest);  // a checkpoint has its own
+    if (setup_->model.bodies[b].elastic && now_.state.time > now_.counted_from)
+      peak = std::max(peak, greatest);
   }
 }
 

@@ -154,8 +154,8 @@ class Run {
     std::vector<ContactForce> contacts;
     std::vector<MemberForce> between_members;
     std::vector<SectionForces> sections;
-    bool sections_found = false;
-    bool stressed = true;  // some of them may not be zero
+    bool sections_found = true;  // until there are contacts
+    bool stressed = true;        // some of them may not be zero
   };
   void find_acting(const std::vector<ContactForce>& contacts, Acting& acting) const;
   // Its sections and the snapshot, while the contacts of `state` are those found last.

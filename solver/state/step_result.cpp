@@ -109,7 +109,8 @@ std::string StepStatus::message(const Model& model) const {
       return (body >= 0 ? "a contact is not resolved: " : "") +
              ("more than a tenth of the energy is unaccounted for after the step " + when +
               ", which is not taken") +
-             (body >= 0 ? ": " + where : "") + finer;
+             (body >= 0 ? ": " + where : "") +
+             (by_tolerance ? "; try a fixed time_step, or softer contacts (alpha)" : finer);
     case Kind::uncontrolled:
       return where + ": the loads do not move the controlled direction";
     case Kind::bad_parameter:

@@ -177,9 +177,9 @@ function show(rows, hits) {
 function sayVerdict() {
   byId('source').textContent = page.changed ? page.words.changed : page.words.recorded;
   byId('back').hidden = !page.changed;
-  if (!data.live) return;  // it stands there
-  byId('verdict').textContent = page.engine.withText(JSON.stringify(page.bodies), (at) =>
-    page.engine.parsed(page.engine.module._page_verdict(at))).words;
+  byId('verdict').textContent = data.loads ? data.loads[page.japanese ? 'ja' : 'en']
+    : page.engine.withText(JSON.stringify(page.bodies), (at) =>
+      page.engine.parsed(page.engine.module._page_verdict(at))).words;
 }
 
 function backToRecorded() {

@@ -15,6 +15,8 @@ constexpr int k_most_errors = 200;
 constexpr const char* k_there_is_no = "there is no ";
 constexpr const char* k_too_large = "brings the scene to ";  // all that follows would do so as well
 constexpr const char* k_overlap = " overlap at the start";
+constexpr const char* k_inside = "lies inside ";
+constexpr const char* k_no_kind = "there is no kind ";  // kinds do not depend on the scene
 
 bool same(const Place& a, const Place& b) {
   return a.line == b.line && a.column == b.column && a.override_text == b.override_text;
@@ -137,7 +139,8 @@ class Collector {
   /// What else there is, is not known when some of it was left out.
   std::string without_known(const std::string& message) const {
     const std::size_t first = message.find('"'), last = message.find('"', first + 1);
-    const bool lists = message.starts_with(k_there_is_no) && last != message.npos && !names_.empty();
+    const bool lists = message.starts_with(k_there_is_no) && !message.starts_with(k_no_kind) &&
+                       last != message.npos && !names_.empty();
     return lists ? message.substr(0, last + 1) : message;
   }
 
@@ -151,11 +154,13 @@ class Collector {
   }
 
   bool follows(const std::string& message, const std::string& error_path) const {
-    if (message.ends_with(k_overlap) && moved_) return true;  // what stands where it should not
+    if (moved_ && (message.ends_with(k_overlap) || message.starts_with(k_inside)))
+      return true;  // what stands where it should not
     for (const std::string& path : keys_) {
       if (path == error_path || path.starts_with(error_path + ".")) return true;  // an entry without its key
       const std::string key = path.substr(path.rfind('.') + 1);
-      if (message.find("belongs to `" + key + '`') != std::string::npos) return true;
+      if (message.starts_with("belongs to ") && message.find('`' + key + '`') != std::string::npos)
+        return true;
       for (const char* how : {" is ", " = "})
         if (message.find("but " + key + how) != std::string::npos) return true;
     }

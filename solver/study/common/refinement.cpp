@@ -5,6 +5,7 @@
 
 #include "solver/frame/integrator.h"
 #include "solver/math/ranges.h"
+#include "solver/math/rotation.h"
 
 namespace topple::study {
 namespace {
@@ -80,7 +81,10 @@ std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outc
         e.overturn_error =
             overturn_error(*coarse.beyond_since, *fine.beyond_since,
                            frequency_parameter(model.bodies[b], setup.parameters.gravity.norm()));
-      e.peak_tilt_error = error(coarse.peak_tilt, fine.peak_tilt, k_least_tilt_error);
+      const Vec3 axis = exp_quaternion(setup.starts[b].rotation) * Vec3::UnitZ();
+      const double given = std::atan2(axis.head<2>().norm(), axis.z());
+      if (given == 0 || coarse.peak_tilt > given + k_least_tilt_error)
+        e.peak_tilt_error = error(coarse.peak_tilt, fine.peak_tilt, k_least_tilt_error);
       e.peak_slide_error = error(coarse.peak_slide, fine.peak_slide, k_least_slide_error);
       if (!e.overturned && !coarse.always_rigid && !fine.always_rigid)
         e.peak_stress_error =

@@ -39,7 +39,8 @@ bool is_by_tolerance(const Parameters& parameters);
 
 /// Stated errors of one body: k_error_of_difference times the difference; of the time of a fall more where it
 /// comes later at finer steps, since what nearly balances takes ever longer. Absent: the quantity does not
-/// exist in one of the runs, or they are on different courses, where small differences decide. Of what fell
+/// exist in one of the runs, or they are on different courses, where small differences decide, or the
+/// greatest tilt is the one from which the body was let go. Of what fell
 /// the stress is that of its landing, whose error follows no order.
 struct BodyError {
   bool overturned = false, overturned_refined = false;

@@ -129,6 +129,19 @@ TEST(CheckWholeScene, a_misspelt_kind_is_one_error) {
   EXPECT_NE(found.errors[0].find("the nearest is bookshelf"), std::string::npos) << found.errors[0];
 }
 
+// Nor is what goes by where the other stands, and each of two kinds is told what there is.
+TEST(CheckWholeScene, what_stands_beside_a_misspelt_kind_is_not_blamed) {
+  const CheckedScene found = checked(
+      "topple = 1\n[floor]\n[[wall]]\nname = \"back\"\nat = [-2, 0]\nnormal = [1, 0, 0]\n"
+      "[[furniture]]\nkind = \"filing cabinet\"\nname = \"F1\"\nagainst = \"back\"\n"
+      "[[furniture]]\nkind = \"cabinet\"\nname = \"C2\"\nbeside = \"F1\"\ngap = \"5 mm\"\n"
+      "[[furniture]]\nkind = \"bookcase\"\nname = \"books\"\nat = [1, 2]\n"
+      "[[place]]\nname = \"A\"\nat = [0, 0]\n");
+  ASSERT_EQ(found.errors.size(), 2u) << testing::PrintToString(found.errors);
+  EXPECT_NE(found.errors[0].find("the nearest is filing-cabinet"), std::string::npos) << found.errors[0];
+  EXPECT_NE(found.errors[1].find("known: bed, bookshelf"), std::string::npos) << found.errors[1];
+}
+
 TEST(CheckWholeScene, entries_keep_their_numbers_behind_one_that_is_left_out) {
   const CheckedScene found = checked(k_scene + "[[probe]]\n[[probe]]\nbody = \"beam\"\nnode = 7\n");
   ASSERT_EQ(found.errors.size(), 2u);

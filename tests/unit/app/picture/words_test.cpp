@@ -137,7 +137,7 @@ TEST(Words, what_falls_has_not_fallen_before_it_lies) {
   row.body[0].tilt = 66 / k_degrees;
   EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 66°");
   row.body[0].energy += 0.5 * model.bodies[0].mass * 1.5 * 1.5;  // at 1.5 m/s
-  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: toppling, tilt 66.0° (critical 12.0°)");
+  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: beyond critical, tilt 66.0° (critical 12.0°)");
   row.body[0].tilt = 90 / k_degrees;  // slides about
   EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 90°");
 }
@@ -153,6 +153,18 @@ TEST(Words, what_nothing_touches_does_not_stand) {
   };
   while (run.time() < 0.2) ASSERT_TRUE(run.advance().ok());
   EXPECT_EQ(words(), "cube: in the air, tilt 0°");
+  // what trembles on an edge bears nothing at times
+  io::FrameRow low = io::frame_row(run);
+  double least = 1e9;
+  for (std::size_t i = 2; i < low.position.size(); i += 3) least = std::min(least, double{low.position[i]});
+  for (const double gap : {1e-3, 1e-2}) {
+    io::FrameRow there = low;
+    for (std::size_t i = 2; i < low.position.size(); i += 3)
+      there.position[i] += static_cast<float>(gap - least + scene.setup.model.contact_points[0].width / 2);
+    EXPECT_EQ(body_in_words(scene.setup.model, scene.setup.parameters.gravity, there, 0) ==
+                  "cube: in the air, tilt 0°",
+              gap > 5e-3);
+  }
   io::FrameRow without_contacts = io::frame_row(run);
   without_contacts.knows_contacts = false;
   EXPECT_EQ(body_in_words(scene.setup.model, scene.setup.parameters.gravity, without_contacts, 0)

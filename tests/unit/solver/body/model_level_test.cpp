@@ -406,6 +406,7 @@ TEST(ModelLevel, friction_bears_after_a_change_what_it_bore_before) {
     return sum;
   };
   const double weight = sim.model.bodies[0].mass * k_g;
+  sim.parameters.time_step = 1e-6;  // before what is missing makes the body slide until it is there again
   for (const BodyModel model : {BodyModel::frame, BodyModel::elastic, BodyModel::rigid, BodyModel::elastic}) {
     const Vec3 before = friction();
     EXPECT_LT(before.x(), -0.05 * weight);

@@ -454,6 +454,37 @@ TEST(Overturn, uplift_and_impact_count_from_the_stated_angle_on) {
   }
 }
 
+// While it tips over a side on two corners one of these lets go and bears again: the side across has not
+// lifted.
+TEST(Overturn, a_corner_that_trembles_while_a_body_tips_over_its_side_is_no_uplift) {
+  const Standing s = standing();
+  Simulation sim(s.model, {s.start}, {}, true);
+  const double weight = s.model.bodies[0].mass * k_g;
+  const auto at = [&](int point) { return s.model.node_position[s.model.contact_points[point].node]; };
+  std::vector<int> points = s.model.bodies[0].base_points;
+  double most = -1e9;
+  for (const int p : points) most = std::max(most, at(p).x());
+  std::erase_if(points, [&](int p) { return at(p).x() < most - 1e-6; });
+  const int corner = *std::ranges::max_element(points, {}, [&](int p) { return at(p).y(); });
+  Outcome outcome(s.model, {s.start});
+  std::vector<Event> events;
+  for (int k = 0; k <= 10; ++k) {
+    State state = sim.state;
+    state.time = 0.01 * k;
+    const Quat turn = exp_quaternion(Vec3(0, k * k_uplift_angle, 0));
+    for (Vec3& x : state.position) x = turn * x;
+    std::vector<ContactForce> forces;
+    for (const int p : points) {
+      const double normal = k % 2 == 1 && p == corner ? 0 : weight / static_cast<double>(points.size());
+      forces.push_back({p, 0, 0, normal, Vec3(0, 0, normal)});
+    }
+    outcome.observe(sim.model, sim.parameters, state, forces, {}, events);
+  }
+  EXPECT_EQ(outcome.bodies()[0].impacts, 0);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].kind, Event::Kind::uplift);  // of the side behind
+}
+
 TEST(Overturn, resting_cabinet_has_no_events) {
   const Standing s = standing();
   Simulation sim(s.model, {s.start}, {}, true);
