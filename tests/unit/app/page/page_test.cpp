@@ -256,7 +256,11 @@ TEST(ReplayOnly, three_times_the_wall_time_of_the_run_may_be_three_seconds) {
     return std::string(why_replay_only(scene, {.summary = summary, .edited = edited}).word);
   };
   EXPECT_EQ(word("{\"wall_s\": 0.999}"), "");
-  EXPECT_EQ(word("{\"wall_s\": 1.001}"), "replay_only");
+  EXPECT_EQ(word("{\"wall_s\": 1.001}"), "replay_stress");
+  EXPECT_EQ(
+      why_replay_only(io::load_scene("paper-a", {"run.want=[\"motion\"]"}), {.summary = "{\"wall_s\": 2}"})
+          .word,
+      "replay_only");
   EXPECT_DOUBLE_EQ(why_replay_only(scene, {.summary = "{\"wall_s\": 1.2}"}).seconds, 3.6);
   EXPECT_EQ(word(""), "");
   EXPECT_EQ(word("{\"wall_s\": 0.1}", true), "replay_edits");
