@@ -30,7 +30,7 @@ using namespace model_words;
 // how bodies and anchors stand
 inline constexpr Phrase k_tilted{"tilt {0:.1f}°", "傾斜 {0:.1f}°"};
 inline constexpr Phrase k_fallen{"fallen, tilt {0:.0f}°", "転倒、傾斜 {0:.0f}°"};
-inline constexpr Phrase k_beyond{"beyond critical, tilt {0:.1f}° (critical {1:.1f}°)",
+inline constexpr Phrase k_beyond{"beyond critical, {0:.1f}° of {1:.1f}°",
                                  "限界超過、{0:.1f}°（限界 {1:.1f}°）"};
 inline constexpr Phrase k_tipped{"tipped, rests at {0:.1f}° (critical {1:.1f}°)",
                                  "傾いて静止、{0:.1f}°（限界 {1:.1f}° 超過）"};

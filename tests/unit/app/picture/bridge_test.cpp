@@ -306,7 +306,7 @@ TEST_F(BridgeTest, captions_tell_a_tilt_from_the_critical_angle) {
   row.body[0].critical_angle = 10.3 / k_degrees;
   const Vec3& gravity = scene_.setup.parameters.gravity;
   row.body[0].energy += 1;  // J, of motion
-  EXPECT_EQ(body_in_words(model(), gravity, row, 0), "free: beyond critical, tilt 34.8° (critical 10.3°)");
+  EXPECT_EQ(body_in_words(model(), gravity, row, 0), "free: beyond critical, 34.8° of 10.3°");
   row.body[0].energy -= io::kinetic_energy(model(), gravity, row, 0);
   EXPECT_EQ(body_in_words(model(), gravity, row, 0), "free: tipped, rests at 34.8° (critical 10.3°)");
 }

@@ -137,7 +137,7 @@ TEST(Words, what_falls_has_not_fallen_before_it_lies) {
   row.body[0].tilt = 66 / k_degrees;
   EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 66°");
   row.body[0].energy += 0.5 * model.bodies[0].mass * 1.5 * 1.5;  // at 1.5 m/s
-  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: beyond critical, tilt 66.0° (critical 12.0°)");
+  EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: beyond critical, 66.0° of 12.0°");
   row.body[0].tilt = 90 / k_degrees;  // slides about
   EXPECT_EQ(body_in_words(model, gravity, row, 0), "free: fallen, tilt 90°");
 }
