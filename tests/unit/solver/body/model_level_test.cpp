@@ -406,12 +406,20 @@ TEST(ModelLevel, friction_bears_after_a_change_what_it_bore_before) {
     return sum;
   };
   const double weight = sim.model.bodies[0].mass * k_g;
-  sim.parameters.time_step = 1e-6;  // before what is missing makes the body slide until it is there again
-  for (const BodyModel model : {BodyModel::frame, BodyModel::elastic, BodyModel::rigid, BodyModel::elastic}) {
-    const Vec3 before = friction();
-    EXPECT_LT(before.x(), -0.05 * weight);
+  sim.state.energy.largest = 100;  // J, so that a frame is calm
+  for (const BodyModel model : {BodyModel::frame, BodyModel::elastic}) {
+    const ModelLevel level = sim.state.bodies[0].level;
     sim.parameters.models[0] = model;
-    ASSERT_TRUE(sim.advance(1));
+    sim.parameters.time_step = 1e-3;
+    for (int k = 0; k < 78 && level == ModelLevel::frame; ++k) ASSERT_TRUE(sim.advance(1));
+    sim.parameters.time_step = 1e-6;  // before what is missing makes the body slide until it is there again
+    Vec3 before = Vec3::Zero();
+    for (int k = 0; k < 4000 && sim.state.bodies[0].level == level; ++k) {
+      before = friction();
+      ASSERT_TRUE(sim.advance(1));
+    }
+    ASSERT_NE(sim.state.bodies[0].level, level);
+    EXPECT_LT(before.x(), -0.05 * weight);
     EXPECT_LT((friction() - before).norm(), 0.02 * weight) << traits(sim.state.bodies[0].level).word;
   }
 }
