@@ -23,8 +23,9 @@
 //     if that is more (ReducedBody::blow_error)
 // A trajectory that comes near the critical angle, or bounces often, can enlarge them.
 // It comes down to its base level when no such frame is near, no hinge ever formed in it, it does not fall,
-// and for k_calm_for sqrt(f + 1) < k_calm_yield, its strain energy but for that of modes is below
-// k_negligible of m g reach and of the largest energy, and its error would be half of what is allowed.
+// and for k_calm_for sqrt(f + 1) < k_calm_yield, its strain energy but for that of modes and local springs
+// is below k_negligible of m g reach and of the largest energy, and its error would be half of what is
+// allowed.
 //
 // Up from a planar block: it sinks into the springs of its contacts so far that they bear what the floor
 // bore. Up: nodes are placed where the modes, and what loads add to them statically, put them, and moved

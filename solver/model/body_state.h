@@ -64,8 +64,7 @@ struct BodyState {
   LevelReason reason = LevelReason::asked;
   double error_estimate = 0;  ///< as Parameters::accuracy; infinite: unknown; not in checkpoints
   double calm_since = -1;  ///< s, since when a frame meets the conditions of a lower level; -1: it does not
-  double peak_stress =
-      0;  ///< Pa, greatest at the ends of the steps so far, of one that may be elastic in a Run
+  double peak_stress = 0;  ///< Pa, greatest at ends of steps so far, of one that may be elastic, in a Run
   Vec3 position = Vec3::Zero();               ///< m, centre of gravity, floor's frame
   Quat rotation = Quat::Identity();           ///< reference to current
   Vec3 velocity = Vec3::Zero();               ///< m/s
