@@ -126,8 +126,11 @@ inline constexpr Phrase k_export_recorded{"Only what is recorded can be exported
                                           "書き出せるのは記録だけです。この計算は記録されていません。"};
 inline constexpr Phrase k_export_too_early{"There is no instant yet that could be exported.",
                                            "書き出せる時刻がまだありません。"};
-inline constexpr Phrase k_export_newest{"Only the newest branch is exported; another one is shown.",
-                                        "書き出せるのは最新の枝だけです。別の枝が表示されています。"};
+inline constexpr Phrase k_export_newest{
+    "Only the newest branch, {1}, is exported; branch {0} is shown. Choose {1} in the list of branches. "
+    "The values plotted of branch {0} are written by CSV above the plots.",
+    "書き出せるのは最新の分岐 {1} だけです（表示中は分岐 {0}）。分岐の一覧で {1} を選んでください。"
+    "グラフにした値は、表示中の分岐 {0} のものもグラフの CSV で保存できます。"};
 inline constexpr Phrase k_exporting{"Exporting {0}", "{0} を書き出しています"};
 inline constexpr Phrase k_export_progress{"{0:.4g} of {1:.4g} {2}, {3:.3g}/s, {4:.0f} s left",
                                           "{0:.4g}/{1:.4g}、毎秒 {3:.3g}、残り {4:.0f} 秒"};

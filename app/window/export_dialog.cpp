@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 namespace ww = window_words;
 
 constexpr int k_most_rate = 240;
+constexpr int k_about_lines = 1, k_note_lines = 3;
 
 /// The options of `topple render` that draw as the viewer does, all that it shows. aspect: width / height of
 /// the picture.
@@ -75,10 +76,22 @@ std::vector<std::string> as_seen(const Player& player, const Viewer& viewer, flo
   return words;
 }
 
-void quiet_text(const std::string& text) {
+/// Why the branch shown is not exported. Empty: it is the newest.
+std::string older_branch(const Player& player) {
+  const std::int32_t shown = player.shown_branch(), newest = player.status().branch;
+  return shown == newest ? "" : say(ww::k_export_newest, shown, newest);
+}
+
+/// Begins a place for text that is as high whatever it holds; more than it holds scrolls.
+void begin_lines(const char* name, int lines) {
+  ImGui::BeginChild(name, {0, static_cast<float>(lines) * ImGui::GetTextLineHeightWithSpacing()}, false,
+                    ImGuiWindowFlags_NoNav);
   ImGui::PushTextWrapPos(0);
-  ImGui::TextDisabled("%s", text.c_str());
+}
+
+void end_lines() {
   ImGui::PopTextWrapPos();
+  ImGui::EndChild();
 }
 
 void label(const Phrase& phrase) {
@@ -122,7 +135,7 @@ void ExportDialog::start(const Player& player, const Viewer& viewer, const std::
   try {
     if (player.way().empty()) throw std::runtime_error(say(ww::k_export_too_early));
     if (recording.empty()) throw std::runtime_error(say(ww::k_export_recorded));
-    if (player.shown_branch() != player.status().branch) throw std::runtime_error(say(ww::k_export_newest));
+    if (player.shown_branch() != player.status().branch) throw std::runtime_error(older_branch(player));
     std::error_code ignored;
     if (fs::exists(result, ignored) || exports_.makes(result))
       throw std::runtime_error(say(ww::k_already_there, result));
@@ -169,19 +182,16 @@ void ExportDialog::require_drawable() const {
 void ExportDialog::draw(const Player& player, const Viewer& viewer, const std::string& recording,
                         const Box& window, const render::OverlayFonts& fonts) {
   begin_panel_over("export", window, 660, 0.46f, say(ww::k_export_title), fonts);
-  draw_choices(player, viewer);
-  if (!refused_.empty()) {
-    ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(say(ww::k_not_written, refused_).c_str());
-    ImGui::PopTextWrapPos();
-  }
+  draw_choices(player);
+  draw_notes(player, viewer);
   ImGui::Dummy({0, 4});
-  if (button_at_right(say(ww::k_export_now), 1)) start(player, viewer, recording);
+  if (button_at_right(say(ww::k_export_now), 1, older_branch(player).empty()))
+    start(player, viewer, recording);
   if (button_at_right(say(ww::k_close), 0)) close();
   end_panel_over();
 }
 
-void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
+void ExportDialog::draw_choices(const Player& player) {
   const std::pair<const Phrase*, const Phrase*> kinds[] = {{&ww::k_picture, &ww::k_picture_about},
                                                            {&ww::k_video, &ww::k_video_about},
                                                            {&ww::k_tables, &ww::k_tables_about}};
@@ -190,28 +200,24 @@ void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
     if (ImGui::RadioButton(say(*kinds[i].first).c_str(), static_cast<int>(what) == i)) {
       what = static_cast<What>(i);
       suggest_path(player);
+      refused_.clear();
     }
   }
-  quiet_text(say(*kinds[static_cast<int>(what)].second));
-  if (player.shown_branch() != player.status().branch) quiet_text(say(ww::k_export_newest));
-  if (what != What::tables && viewer.shows_earlier()) quiet_text(say(ww::k_export_without_before));
-  // what follows a run is drawn at its newest step, of which rows may not tell yet
-  if (const double last = player.way().empty() ? player.time() : player.way().back()->time;
-      what == What::picture && last < player.time())
-    quiet_text(say(ww::k_picture_of_row, last));
-  ImGui::Dummy({0, 2});
+  begin_lines("about", k_about_lines);
+  ImGui::TextDisabled("%s", say(*kinds[static_cast<int>(what)].second).c_str());
+  end_lines();
   draw_path();
   const float number = 7 * ImGui::GetFontSize();
-  if (what != What::tables) {
-    label(ww::k_size);
-    ImGui::SetNextItemWidth(2 * number);
-    ImGui::InputInt2("px##size", size);
-    for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {3840, 2160}}) {
-      ImGui::SameLine();
-      if (ImGui::SmallButton(fmt::format("{}×{}", width, height).c_str())) size[0] = width, size[1] = height;
-    }
+  ImGui::BeginDisabled(what == What::tables);
+  label(ww::k_size);
+  ImGui::SetNextItemWidth(2 * number);
+  ImGui::InputInt2("px##size", size);
+  for (const auto& [width, height] : {std::pair{1280, 720}, {1920, 1080}, {3840, 2160}}) {
+    ImGui::SameLine();
+    if (ImGui::SmallButton(fmt::format("{}×{}", width, height).c_str())) size[0] = width, size[1] = height;
   }
-  if (what != What::video) return;
+  ImGui::EndDisabled();
+  ImGui::BeginDisabled(what != What::video);
   // what was asked for to the end of a run that goes on follows it
   const double last = player.way().empty() ? 0 : player.way().back()->time;
   if (to >= std::exchange(last_, last)) to = last;
@@ -230,6 +236,26 @@ void ExportDialog::draw_choices(const Player& player, const Viewer& viewer) {
   ImGui::SameLine(0, 2 * ImGui::GetFontSize());
   ImGui::SetNextItemWidth(number);
   ImGui::InputDouble((say(ww::k_times_real_time) + "##speed").c_str(), &speed, 0, 0, "%g");
+  ImGui::EndDisabled();
+}
+
+/// What is wrong, else what the export leaves out.
+void ExportDialog::draw_notes(const Player& player, const Viewer& viewer) {
+  begin_lines("notes", k_note_lines);
+  const std::string older = older_branch(player);
+  if (!refused_.empty()) {
+    ImGui::TextUnformatted(say(ww::k_not_written, refused_).c_str());
+  } else if (!older.empty()) {
+    ImGui::TextUnformatted(older.c_str());
+  } else {
+    if (what != What::tables && viewer.shows_earlier())
+      ImGui::TextDisabled("%s", say(ww::k_export_without_before).c_str());
+    // what follows a run is drawn at its newest step, of which rows may not tell yet
+    if (const double last = player.way().empty() ? player.time() : player.way().back()->time;
+        what == What::picture && last < player.time())
+      ImGui::TextDisabled("%s", say(ww::k_picture_of_row, last).c_str());
+  }
+  end_lines();
 }
 
 void ExportDialog::draw_path() {

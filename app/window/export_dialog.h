@@ -34,8 +34,9 @@ class ExportDialog {
 
  private:
   void suggest_path(const Player& player);
-  void draw_choices(const Player& player, const Viewer& viewer);
+  void draw_choices(const Player& player);
   void draw_path();
+  void draw_notes(const Player& player, const Viewer& viewer);
   void require_drawable() const;
 
   Exports& exports_;

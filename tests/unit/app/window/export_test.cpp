@@ -76,6 +76,59 @@ TEST_F(ExportDialogTest, numbers_that_cannot_be_drawn_are_refused_with_what_is_a
   EXPECT_TRUE(exports().empty());
 }
 
+TEST_F(ExportDialogTest, its_buttons_stand_still_whatever_is_chosen_or_said) {
+  open_rocking();
+  run_to(0.2);
+  open_export(ExportDialog::What::picture);
+  const auto panel = [] {
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+      if (window->WasActive && std::string(window->Name).find("export/panel_") == 0 &&
+          std::string(window->Name).find("/", 13) == std::string::npos)
+        return std::pair(window->Pos.y, window->ContentSize.y);
+    return std::pair(0.f, 0.f);
+  };
+  for (int i = 0; i < 3; ++i) frame();
+  const auto before = panel();
+  ASSERT_GT(before.second, 100);
+  const auto expect_still = [&](const char* where) {
+    for (int i = 0; i < 3; ++i) {
+      frame();
+      EXPECT_EQ(panel(), before) << where;
+    }
+  };
+  for (const auto what : {ExportDialog::What::video, ExportDialog::What::tables}) {
+    dialog().what = what;
+    expect_still("chosen");
+  }
+  set_path("no/such/folder");
+  start();
+  ASSERT_NE(dialog().refused(), "");
+  expect_still("refused");
+}
+
+// The branch shown may be an older one; the program writes the newest of a recording.
+TEST_F(ExportDialogTest, an_older_branch_is_refused_by_its_number_and_that_of_the_newest) {
+  open_rocking();
+  run_to(0.2);
+  player().scrub(0.1);
+  player().continue_from_here();
+  ASSERT_TRUE(until([&] { return player().history().branches.size() == 2 && player().can_edit(); }));
+  player().show_branch(0);
+  frame();
+  for (const auto what :
+       {ExportDialog::What::picture, ExportDialog::What::video, ExportDialog::What::tables}) {
+    open_export(what);
+    set_path("older");
+    click("Export");
+    EXPECT_EQ(dialog().refused(), "") << "the button is not off";
+    start();
+    EXPECT_NE(dialog().refused().find("newest branch, 1, is exported; branch 0 is shown"), std::string::npos)
+        << dialog().refused();
+    press(render::key::escape);
+  }
+  EXPECT_TRUE(exports().empty());
+}
+
 TEST_F(ExportDialogTest, tab_goes_from_number_to_number) {
   connect_keyboard();
   open_rocking();
