@@ -190,23 +190,19 @@ void Viewer::draw_plots_strip() {
 }
 
 void Viewer::write_plots(PlotRequest request) {
-  // Beside the recording; of what is not recorded, in the working folder.
-  const std::string& recording = player_.status().recording;
-  const std::filesystem::path folder = std::filesystem::path(recording).parent_path();
-  const std::string stem =
-      recording.empty() ? player_.scene().name : std::filesystem::path(recording).stem().string();
   const char* const ending = request == PlotRequest::csv ? "csv" : "png";
   std::filesystem::path path;
   std::error_code ignored;
+  const std::filesystem::path folder = std::filesystem::current_path(ignored);
   int number = 1;
-  do path = folder / fmt::format("{}-plots-{}.{}", stem, number++, ending);
+  do path = folder / fmt::format("{}-plots-{}.{}", player_.scene().name, number++, ending);
   while (std::filesystem::exists(path, ignored));
   try {
     if (request == PlotRequest::csv)
       write_whole_file(path, host::FileKind::csv, plots_csv(player_, histories_, inspection_));
     else
       write_png(path, picture_of_plots());
-    message_ = say(k_written, std::filesystem::absolute(path, ignored).string());
+    message_ = say(k_written, path.string());
   } catch (const std::runtime_error& error) {
     message_ = say(k_not_written, error.what());
   }

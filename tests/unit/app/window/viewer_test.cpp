@@ -569,9 +569,15 @@ TEST_F(InspectorTest, values_are_plotted_scrubbed_and_written) {
   EXPECT_FALSE(player_->at_head());
   EXPECT_GT(player_->time(), 0.2);
 
+  const std::filesystem::path started_in = std::filesystem::current_path();
+  std::filesystem::create_directory(scratch_ / "work");
+  std::filesystem::current_path(scratch_ / "work");
   press_button("plots", "CSV");
   press_button("plots", "PNG");
-  const auto csv = std::filesystem::path(scratch_ / "view-plots-1.csv");
+  std::filesystem::current_path(started_in);
+  const std::string stem = (scratch_ / "work").string() + "/" + player_->scene().name + "-plots-1";
+  EXPECT_NE(viewer_->message().find(stem + ".png"), std::string::npos) << viewer_->message();
+  const std::filesystem::path csv = stem + ".csv";
   std::ifstream file(csv);
   std::string line;
   ASSERT_TRUE(std::getline(file, line));
@@ -579,7 +585,7 @@ TEST_F(InspectorTest, values_are_plotted_scrubbed_and_written) {
   std::size_t lines = 0;
   while (std::getline(file, line)) ++lines;
   EXPECT_EQ(lines, player_->way().size());
-  const render::Image png = render::read_png(scratch_ / "view-plots-1.png");
+  const render::Image png = render::read_png(stem + ".png");
   EXPECT_EQ(png.width, 1280);
   EXPECT_EQ(png.rgba[0], 255);  // white paper, and something on it
   EXPECT_TRUE(std::ranges::any_of(png.rgba, [](std::uint8_t byte) { return byte < 60; }));
