@@ -10,6 +10,8 @@
 namespace topple::app {
 namespace {
 
+constexpr double k_path_room = 0.12;  // of the range of an axis, on either side
+
 Vec3 place_in(const PathMeasure& measure, const io::FrameRow& row) {
   return measure.node < 0 ? row.body[static_cast<std::size_t>(measure.body)].centre()
                           : position(row, measure.node);
@@ -66,6 +68,16 @@ std::vector<double> travels(const Model& model, const PathMeasure& measure, cons
   out.reserve(way.size());
   for (const RowPtr& row : way) out.push_back(travel(model, measure, *row, out.empty() ? 0 : out.back()));
   return out;
+}
+
+PathAxis::PathAxis(const std::vector<double>& values, double rounding) {
+  const auto [least, greatest] = std::ranges::minmax(values);
+  low = least < -rounding ? least : 0;
+  high = greatest > rounding ? greatest : 0;
+  if (low == high) high = 1;
+  const double room = k_path_room * (high - low);
+  if (low < 0) low -= room;
+  high += room;
 }
 
 std::size_t nearest_point(const std::vector<ImVec2>& points, ImVec2 place) {

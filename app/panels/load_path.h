@@ -32,6 +32,14 @@ double travel(const Model& model, const PathMeasure& measure, const io::FrameRow
 /// Of each row of a way.
 std::vector<double> travels(const Model& model, const PathMeasure& measure, const std::vector<RowPtr>& way);
 
+/// What the axis of a path covers: 0 and the values, with room beside them. What is not greater than
+/// `rounding` counts as 0.
+struct PathAxis {
+  PathAxis(const std::vector<double>& values, double rounding);
+  float part(double value) const { return static_cast<float>((value - low) / (high - low)); }
+  double low, high;
+};
+
 /// Index of the point that is nearest to `place`. There must be one.
 std::size_t nearest_point(const std::vector<ImVec2>& points, ImVec2 place);
 

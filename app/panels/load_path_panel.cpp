@@ -22,7 +22,7 @@ namespace {
 using namespace window_words;
 
 constexpr float k_dash = 4;             // px, of unstable stretches
-constexpr double k_path_room = 0.12;    // of the range of an axis, on either side
+constexpr double k_rounding = 1e-6;     // m or rad, of what rows hold in single precision
 constexpr double k_in_millimetres = 1;  // m: travels below it
 
 struct LossWord {
@@ -33,20 +33,6 @@ constexpr LossWord k_loss_words[] = {{Stability::Loss::limit_point, k_limit_poin
                                      {Stability::Loss::buckling, k_buckles},
                                      {Stability::Loss::mechanism, k_mechanism},
                                      {Stability::Loss::fracture, k_section_breaks}};
-
-struct PathAxis {
-  double low, high;
-  explicit PathAxis(const std::vector<double>& values) {
-    const auto [least, greatest] = std::ranges::minmax(values);
-    low = std::min(least, 0.);
-    high = std::max(greatest, 0.);
-    if (low == high) high = 1;
-    const double room = k_path_room * (high - low);
-    if (low < 0) low -= room;
-    high += room;
-  }
-  float part(double value) const { return static_cast<float>((value - low) / (high - low)); }
-};
 
 struct PathChart : ChartBox {
   PathAxis x, y;
@@ -250,7 +236,7 @@ void draw_load_path(Player& player, const Box& box) {
       travel(setup.model, measure, *now, along[std::max<std::size_t>(before, 1) - 1]) / unit.size;
   for (double& value : along) value /= unit.size;
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const PathChart chart = draw_path_grid(list, box, PathAxis(along), PathAxis(factors));
+  const PathChart chart = draw_path_grid(list, box, {along, k_rounding / unit.size}, {factors, 0});
   std::vector<ImVec2> points;
   for (std::size_t i = 0; i < way.size(); ++i) points.push_back(chart.at(along[i], factors[i]));
   list.PushClipRect({chart.left, chart.top}, {chart.right, chart.bottom}, true);

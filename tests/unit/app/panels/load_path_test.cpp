@@ -8,6 +8,7 @@
 
 #include "app/batch/load_steps.h"
 #include "app/batch/summary.h"
+#include "render/scene/ticks.h"
 #include "unit/app/live.h"
 #include "unit/render/scratch.h"
 
@@ -46,6 +47,18 @@ TEST(LoadPath, the_controlled_node_moves_in_equal_parts) {
   const std::vector<double> along = travels(scene.setup.model, measure, way);
   ASSERT_EQ(along.size(), 5u);
   for (std::size_t i = 0; i < along.size(); ++i) EXPECT_NEAR(along[i], -0.01 * static_cast<double>(i), 1e-8);
+}
+
+// At its first step a path has the travel of rounding.
+TEST(LoadPath, an_axis_of_rounding_alone_has_numbers_that_can_be_read) {
+  const auto decimals = [](const PathAxis& axis) {
+    return render::nice_ticks(axis.low, axis.high, 5).decimals;
+  };
+  for (const std::vector<double>& values : {std::vector<double>{0}, {3e-17}, {-2e-9, 1e-16}})
+    EXPECT_LE(decimals({values, 1e-3}), 1) << values.front();
+  const PathAxis moved({0, 2, 5}, 1e-3);
+  EXPECT_EQ(moved.low, 0);
+  EXPECT_NEAR(moved.high, 5.6, 1e-12);
 }
 
 TEST(LoadPath, without_control_the_first_probe_or_the_node_that_moves_most_is_shown) {
