@@ -72,13 +72,15 @@ const Phrase& why_no_limits(const Model& model, const Parameters& parameters, in
 std::string held_in_words(const Player& player, int body) {
   const Model& model = player.scene().setup.model;
   const auto row = player.row();
+  std::string names;
   for (std::size_t k = 0; row && k < model.anchors.size(); ++k) {
     const Anchor& anchor = model.anchors[k];
     const float state = row->anchor[k].state;
     const bool in_place = state == io::k_anchor_holds || state == io::k_anchor_slack;
     if (in_place && study::holds(model, anchor, body))
-      return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, anchor.name);
+      names += (names.empty() ? "" : say(k_comma)) + anchor.name;
   }
+  if (!names.empty()) return say(k_is_held, model.bodies[static_cast<std::size_t>(body)].name, names);
   for (const Wedge& wedge : player.scene().setup.wedges)
     if (wedge.in_place() && wedge.body == body)
       return say(k_is_leaned, model.bodies[static_cast<std::size_t>(body)].name, wedge.name);

@@ -134,7 +134,7 @@ TEST_F(CriteriaTest, of_a_body_that_an_anchor_holds_it_is_said_that_they_do_not_
   start("anchored", {});
   ASSERT_TRUE(limits_of(*player_, 0));
   const int body = player_->scene().setup.model.anchors.front().body;
-  EXPECT_NE(held_in_words(*player_, body).find("free is held by left"), std::string::npos);
+  EXPECT_NE(held_in_words(*player_, body).find("free is held by left, right:"), std::string::npos);
   start("anchored", {"anchor.1.on=false", "anchor.2.on=false"});
   EXPECT_EQ(held_in_words(*player_, body), "");
 }
