@@ -1,5 +1,7 @@
 #include "app/panels/edit_marks.h"
 
+#include <set>
+
 namespace topple::app {
 namespace {
 
@@ -26,6 +28,19 @@ std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits,
       marks.push_back({edit, edit});
   }
   return marks;
+}
+
+std::vector<bool> drawn_marks(const std::vector<PlacedMark>& marks, float apart) {
+  std::set<float> taken;
+  for (const PlacedMark& mark : marks)
+    if (!mark.yields) taken.insert(mark.x);
+  std::vector<bool> drawn;
+  for (const PlacedMark& mark : marks) {
+    const auto next = taken.upper_bound(mark.x - apart);
+    drawn.push_back(!mark.yields || next == taken.end() || *next >= mark.x + apart);
+    if (drawn.back()) taken.insert(mark.x);
+  }
+  return drawn;
 }
 
 }  // namespace topple::app

@@ -1,4 +1,4 @@
-// Changes of parameters as they are marked on the timeline.
+// Changes of parameters as they are marked on the timeline, and which marks have room there.
 #pragma once
 
 #include <functional>
@@ -18,5 +18,13 @@ struct EditMark {
 /// it, as known of a drag that was seen.
 std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits,
                                  const std::function<bool(const LoggedEdit&)>& goes_on);
+
+/// A mark along the timeline, px.
+struct PlacedMark {
+  float x;
+  bool yields;  ///< its place to those that do not
+};
+/// Whether each is drawn: all that do not yield, and of the others those that are `apart` from all drawn.
+std::vector<bool> drawn_marks(const std::vector<PlacedMark>& marks, float apart);
 
 }  // namespace topple::app

@@ -21,7 +21,8 @@
 namespace topple::app {
 namespace {
 
-constexpr int k_most_told = 6;  // marks at one place, in its tooltip
+constexpr int k_most_told = 6;      // marks at one place, in its tooltip
+constexpr float k_marks_apart = 5;  // halves of a mark's width, from what gives way to others
 
 using namespace window_words;
 
@@ -324,10 +325,11 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const T
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
   int told = 0, more = 0;
-  const auto add = [&](double time, float y, const std::function<std::string()>& text, auto shape) {
+  const auto add = [&](double time, float y, const std::function<std::string()>& text, bool drawn,
+                       auto shape) {
     const float x = lane.x(time);
     if (x < lane.left || x > lane.right) return;
-    shape(ImVec2(x, y));
+    if (drawn) shape(ImVec2(x, y));
     if (std::abs(mouse.x - x) >= size || std::abs(mouse.y - y) >= 2 * size) return;
     if (told == k_most_told)
       ++more;
@@ -336,18 +338,24 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const T
   };
   const float y = lane.bottom + size + 2;
   const std::vector<std::size_t> coloured = coloured_bodies(tilts);
-  for (const io::RecordedEvent& event : player.events()) {
+  const std::vector<io::RecordedEvent> events = player.events();
+  std::vector<PlacedMark> places;
+  for (const io::RecordedEvent& event : events)
+    places.push_back({lane.x(event.time), event.event.kind == Event::Kind::model});
+  const std::vector<bool> drawn = drawn_marks(places, k_marks_apart * size);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const io::RecordedEvent& event = events[i];
     const EventMark& mark = row_of(k_event_marks, event.event.kind);
     const ImU32 colour = line_colour(coloured, static_cast<std::size_t>(event.event.body));
     add(
-        event.time, y, [&] { return mark.text(player, event); },
+        event.time, y, [&] { return mark.text(player, event); }, drawn[i],
         [&](ImVec2 p) { mark.draw(list, p, size, colour); });
   }
   for (const EditMark& mark :
        edit_marks(player.edits(), [&](const LoggedEdit& edit) { return player.goes_on(edit); }))
     add(
         is_pull(mark) ? mark.first.time : mark.last.time, lane.top, [&] { return edit_text(player, mark); },
-        [&](ImVec2 p) { add_edit_mark(list, p, size); });
+        true, [&](ImVec2 p) { add_edit_mark(list, p, size); });
   if (player.way().empty()) return;
   for (const Stretch& stretch : player.history().way_to(player.shown_branch()))
     for (const Branch& branch : player.history().branches) {

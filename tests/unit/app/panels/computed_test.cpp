@@ -118,6 +118,13 @@ TEST(EditMarks, one_drag_is_one_mark) {
   EXPECT_EQ(pulls[0].last.time, 3.1);
 }
 
+TEST(EditMarks, what_yields_is_drawn_apart_from_all_others) {
+  const std::vector<PlacedMark> marks{{0, true},  {4, true},  {11, true}, {30, false}, {31, false},
+                                      {25, true}, {45, true}, {52, true}, {30, true}};
+  EXPECT_EQ(drawn_marks(marks, 10),
+            (std::vector<bool>{true, false, true, true, true, false, true, false, false}));
+}
+
 TEST_F(ComputedTest, a_slider_that_is_held_still_in_a_drag_has_one_mark) {
   start({"run.duration=3", "cabinet.free.model=rigid"});
   const auto edit_at = [&](double time, double gal) {
