@@ -66,7 +66,7 @@ inline constexpr Phrase k_pulls{"pulls {0:.0f} N", "引張 {0:.0f} N"};
 inline constexpr Phrase k_holds_with{"holds with {0:.0f} N", "保持 {0:.0f} N"};
 inline constexpr Phrase k_pushes{"pushes {0:.0f} N", "圧縮 {0:.0f} N"};
 inline constexpr Phrase k_of_strength{", {0} of its strength", "（耐力の{0}）"};
-inline constexpr Phrase k_anchors{"anchors: {0}", "固定具：{0}"};
+inline constexpr Phrase k_anchors{"fixings: {0}", "固定具：{0}"};
 
 // the instant, the floor
 inline constexpr Phrase k_load_instant{"load step {0} of {1}, load factor {2:.4g}",
@@ -234,7 +234,7 @@ inline constexpr Phrase k_floor{"Floor", "床（加振）"};
 inline constexpr Phrase k_floor_shake{"Floor, shake {0}", "床（加振 {0}）"};
 inline constexpr Phrase k_contact{"Contact", "接触"};
 inline constexpr Phrase k_bodies{"Bodies", "家具"};
-inline constexpr Phrase k_anchors_heading{"Anchors", "固定具"};
+inline constexpr Phrase k_anchors_heading{"Fixings", "固定具"};
 inline constexpr Phrase k_integration{"Integration", "時間積分"};
 inline constexpr Phrase k_on{"on", "加振する"};
 inline constexpr Phrase k_on_about{"shakes the floor; switched over a quarter of a period",
@@ -426,7 +426,7 @@ inline constexpr Phrase k_approximate{"A contact presses on its middle node: its
                                       "中間節点に接触力が作用しているため、この部材の曲げは近似値です。"};
 inline constexpr Phrase k_all_of{"All of {0}", "{0} 全体"};
 inline constexpr Phrase k_how_to_inspect{
-    "Click a member or an anchor; click a member again for its body. Bodies:",
+    "Click a member or a fixing; click a member again for its body. Bodies:",
     "部材か固定具をクリックすると選択します。同じ部材をもう一度クリックすると家具全体。家具の一覧："};
 
 // plots

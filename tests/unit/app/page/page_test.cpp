@@ -9,6 +9,7 @@
 #include "app/page/page_controls.h"
 #include "app/page/page_rows.h"
 #include "app/page/verdict.h"
+#include "app/picture/furnish_words.h"
 #include "solver/io/recording/recording.h"
 #include "unit/app/program.h"
 
@@ -138,6 +139,17 @@ io::Scene changed(const std::string& name, const std::string& key, double value)
 
 const Body& body(const io::Scene& scene, const std::string& name) {
   return *std::ranges::find(scene.setup.model.bodies, name, &Body::name);
+}
+
+TEST(PageControls, anchors_and_fixings_stand_under_the_word_that_the_window_has_for_them) {
+  int found = 0;
+  for (const PageControl& one : page_controls(io::load_scene("anchored"))) {
+    if (one.kind != PageControl::Kind::toggle || !one.key.starts_with("anchor.")) continue;
+    ++found;
+    EXPECT_EQ(one.heading.english, furnish_words::k_fixings.english);
+    EXPECT_EQ(one.heading.japanese, furnish_words::k_fixings.japanese);
+  }
+  EXPECT_EQ(found, 2);
 }
 
 TEST(PageControls, a_frame_can_be_made_heavier) {
