@@ -387,7 +387,7 @@ inline constexpr Phrase k_torque{"T", "ねじり T"};
 inline constexpr Phrase k_moment_y{"My", "曲げ My"};
 inline constexpr Phrase k_moment_z{"Mz", "曲げ Mz"};
 inline constexpr Phrase k_tilt{"tilt", "傾斜"};
-inline constexpr Phrase k_slide{"slide of the base", "底面中心のすべり"};
+inline constexpr Phrase k_slide{"base moved", "台座中央の移動"};
 inline constexpr Phrase k_angular_velocity{"angular velocity", "角速度"};
 inline constexpr Phrase k_kinetic{"kinetic energy", "運動エネルギー"};
 inline constexpr Phrase k_left_to_overturn{"left to overturn", "転倒までの余裕"};
