@@ -33,8 +33,8 @@ std::string text(const ordered_json& value, const char* format) {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
 
-/// The line about `error_estimate`.
-std::string estimate_in_words(const ordered_json& e, bool has_stress) {
+/// The line about `error_estimate` of a run of `bodies`.
+std::string estimate_in_words(const ordered_json& e, const ordered_json& bodies) {
   const std::string begin = fmt::format("error of the time integration ({}): ", e["how"].get<std::string>());
   if (e.contains("failed"))
     return begin + "unknown, the finer run failed: " + e["failed"].get<std::string>() + "\n";
@@ -63,9 +63,11 @@ std::string estimate_in_words(const ordered_json& e, bool has_stress) {
                       part("slide", "peak_slide_m", 1e3, "mm", study::k_least_slide_error) +
                       part("peak stress", "peak_stress_Pa", 1e-6, "MPa", 0);
   words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
-  const bool fell = std::ranges::any_of(
-      e["bodies"], [](const ordered_json& body) { return !body["overturn_time_s"].is_null(); });
-  if (fell && has_stress) words += "; of the stress of a landing it is unknown";
+  bool blow = false;  // decides a stress
+  for (std::size_t b = 0; b < e["bodies"].size(); ++b)
+    blow = blow || (e["bodies"][b]["same_course"].get<bool>() && e["bodies"][b]["peak_stress_Pa"].is_null() &&
+                    !bodies[b]["peak_stress_Pa"].is_null());
+  if (blow) words += "; of the stress of a landing it is unknown";
   for (const auto& line : e["parted"]) words += "; " + line.get<std::string>() + ": one course of many";
   return begin + parts + words + "\n";
 }
@@ -435,10 +437,7 @@ std::string summary_table(const ordered_json& s) {
   for (const auto& a : s["anchors"]) out += anchor_line(a, when);
   for (const auto& w : s["wedges"]) out += wedge_line(w) + "\n";
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
-    out +=
-        estimate_in_words(s["error_estimate"], std::ranges::any_of(s["bodies"], [](const ordered_json& body) {
-                            return !body["peak_stress_Pa"].is_null();
-                          }));
+    out += estimate_in_words(s["error_estimate"], s["bodies"]);
   if (s.contains("ways")) out += ways_in_words(s["ways"], s["person_m"].get<double>());
   for (const auto& p : s["probes"]) {
     const auto& d = p["final"]["displacement_m"];

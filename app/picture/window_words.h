@@ -387,7 +387,7 @@ inline constexpr Phrase k_torque{"T", "ねじり T"};
 inline constexpr Phrase k_moment_y{"My", "曲げ My"};
 inline constexpr Phrase k_moment_z{"Mz", "曲げ Mz"};
 inline constexpr Phrase k_tilt{"tilt", "傾斜"};
-inline constexpr Phrase k_slide{"base moved", "台座中央の移動"};
+inline constexpr Phrase k_slide{"base moved", "底面中心の移動"};
 inline constexpr Phrase k_angular_velocity{"angular velocity", "角速度"};
 inline constexpr Phrase k_kinetic{"kinetic energy", "運動エネルギー"};
 inline constexpr Phrase k_left_to_overturn{"left to overturn", "転倒までの余裕"};
@@ -416,7 +416,7 @@ inline constexpr Phrase k_block_line{"{0:.4g} kg, a solid block, {1}",
                                      "{0:.4g} kg、剛なブロック、モデル {1}"};
 inline constexpr Phrase k_with_its_load{"{0:.4g} kg with what stands on it",
                                         "載っている物を含めて {0:.4g} kg"};
-inline constexpr Phrase k_touched_by{"by {0}: {1} N, upward {2} N, at {3:.2f} m",
+inline constexpr Phrase k_touched_by{"by {0}: {1} N, upward {2} N, at height {3:.2f} m",
                                      "{0} から {1} N（上向き {2} N）、高さ {3:.2f} m"};
 inline constexpr Phrase k_anchor_strength{"strength {0} N", "耐力 {0} N"};
 inline constexpr Phrase k_anchor_peak{"greatest force {0} N", "最大 {0} N"};

@@ -70,9 +70,9 @@ std::vector<Mat3> contact_stiffness(const BodySystem& s, const ContactLaw& law) 
   return sum;
 }
 
-// Contact forces between members at the new velocities instead of the half-step ones that `force` has them
-// at: sweeps over the touches, each of which is solved for its own relative velocity.
-void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const std::vector<Vec3>& half) {
+// Contact forces between members at the new velocities instead of those that `force` has them at: sweeps over
+// the touches, each of which is solved for its own relative velocity. False: they are settled as they were.
+bool solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const std::vector<Vec3>& half) {
   constexpr int k_sweeps = 50;
   constexpr double k_settled = 1e-10;  // of the greatest force
   const auto compliance = [&](int i) {
@@ -106,8 +106,9 @@ void solve_member_contacts(BodySystem& s, const ContactLaw& law, double h, const
       greatest = std::max(greatest, touch.out.force.norm());
       change = std::max(change, (touch.out.force - before).norm());
     }
-    if (!(change > k_settled * greatest)) return;
+    if (!(change > k_settled * greatest)) return sweep > 0;
   }
+  return true;
 }
 
 // Contacts between members enter `force` at the half-step velocity, then at the new one.
@@ -118,10 +119,10 @@ void add_member_contacts(BodySystem& s, const ContactLaw& law, double h, Integra
   solve_member_contacts(s, law, h, w.trial.velocity);
 }
 
-// Forces of planes, solved at each touching node for its new velocity. Inputs and outputs are made in their
-// places: a copy waits for what was just stored.
+// Forces of planes, solved at each touching node for its new velocity; `again`: in place of those that were
+// added before. Inputs and outputs are made in their places: a copy waits for what was just stored.
 void add_plane_contacts(BodySystem& s, const ContactLaw& of_all, std::span<const Vec3> stick, double h,
-                        const IntegratorScratch& w) {
+                        const IntegratorScratch& w, bool again) {
   std::vector<TouchingPair>& touching = s.contacts.planes;
   const auto at_new_velocity = traits(of_all).at_new_velocity;
   for (std::size_t k = 0; k < touching.size();) {
@@ -130,8 +131,10 @@ void add_plane_contacts(BodySystem& s, const ContactLaw& of_all, std::span<const
     const Vec3& half = w.trial.velocity[i];
     std::size_t end = k;
     ContactInput inputs[8];
-    for (; end < touching.size() && touching[end].node == i && end - k < 8; ++end)
+    for (; end < touching.size() && touching[end].node == i && end - k < 8; ++end) {
+      if (again) s.force[i] -= touching[end].out.force;
       new (&inputs[end - k]) ContactInput(s.plane_contact(touching[end], w.trial, stick, w.start.position));
+    }
     const double mass = s.model.node_mass[s.node[i]], impedance = 2 * mass / h;
     if (end - k == 1 && at_new_velocity && s.fixed[i] == 0) {
       new (&touching[k].out)
@@ -144,6 +147,28 @@ void add_plane_contacts(BodySystem& s, const ContactLaw& of_all, std::span<const
     }
     k = end;
   }
+}
+
+// Whether a node that touches a plane belongs to parts that touch.
+bool share_nodes(const Contacts& contacts, std::span<const MemberPair> pairs) {
+  for (const MemberTouch& touch : contacts.members.touches)
+    for (int k = 0; k < pairs[touch.pair].nodes(); ++k)
+      for (const TouchingPair& plane : contacts.planes)
+        if (touch.share[k] != 0 && plane.node == pairs[touch.pair].node[k]) return true;
+  return false;
+}
+
+// Forces of all contacts, those of members and planes in turns where they have nodes in common, until both
+// are those of the new velocities: friction would else do work that no force did.
+void add_contacts(BodySystem& s, const ContactLaw& law, std::span<const Vec3> stick, double h,
+                  IntegratorScratch& w) {
+  constexpr int k_turns = 50;
+  const bool members = !s.candidate_pairs.empty();
+  if (members) add_member_contacts(s, law, h, w);
+  add_plane_contacts(s, law, stick, h, w, false);
+  if (!members || !share_nodes(s.contacts, s.member_pairs())) return;
+  for (int turn = 0; turn < k_turns && solve_member_contacts(s, law, h, w.trial.velocity); ++turn)
+    add_plane_contacts(s, law, stick, h, w, true);
 }
 
 // Velocities to the middle of the step, then positions and rotations to its end.
@@ -246,8 +271,7 @@ StepStatus advance(BodySystem& s, const StepSpan& span, State& state, Integrator
   while (break_sections(s, w.trial));
   s.ends_here = true;
   s.find_plane_contacts(w.trial, s.contacts.planes);
-  if (!s.candidate_pairs.empty()) add_member_contacts(s, law, span.h, w);
-  add_plane_contacts(s, law, stick, span.h, w);
+  add_contacts(s, law, stick, span.h, w);
   for (int i = 0; i < s.count; ++i) s.clear_fixed(i, s.force[i], s.moment[i]);
   StepStatus status;
   status.kind = take_accelerations<damped>(s, span.h, w, state, energy);

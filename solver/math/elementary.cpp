@@ -450,7 +450,7 @@ double hypot(double x, double y) {
 namespace topple {
 
 const char* arithmetic() {
-  return "topple-18";
+  return "topple-19";
 }
 
 }  // namespace topple

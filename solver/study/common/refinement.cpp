@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/body/model_level.h"
+#include "solver/contact/contact_period.h"
 #include "solver/frame/integrator.h"
 #include "solver/math/ranges.h"
 #include "solver/math/rotation.h"
@@ -37,6 +39,16 @@ double overturn_error(double coarse, double fine, double p) {
   if (p == 0) return linear;
   const double left = k_error_of_difference * std::exp(2 * p * (coarse - fine)) - (k_error_of_difference - 1);
   return std::max(linear, -std::log(std::max(left, k_least_left)) / (2 * p));
+}
+
+/// Whether its fixed steps are too long for the blows that it was given as a frame: errors of their stresses
+/// then follow no order.
+bool blurs_blows(const Setup& setup, int body, const BodyOutcome& run) {
+  const Parameters& p = setup.parameters;
+  return run.impacts > 0 && !p.adaptive &&
+         p.time_step * k_steps_of_bounce > contact_period(setup.model, body, p.contact, p.gravity) &&
+         ranges::any_of(run.level_changes,
+                        [](const LevelChange& change) { return traits(change.level).moves_nodes; });
 }
 
 /// Before it overturned, or in all.
@@ -86,7 +98,7 @@ std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outc
       if (given == 0 || coarse.peak_tilt > given + k_least_tilt_error)
         e.peak_tilt_error = error(coarse.peak_tilt, fine.peak_tilt, k_least_tilt_error);
       e.peak_slide_error = error(coarse.peak_slide, fine.peak_slide, k_least_slide_error);
-      if (!e.overturned && !coarse.always_rigid && !fine.always_rigid)
+      if (!e.overturned && !coarse.always_rigid && !fine.always_rigid && !blurs_blows(setup, b, coarse))
         e.peak_stress_error =
             error(coarse.peak_stress, fine.peak_stress, k_least_stress_error * coarse.peak_stress);
     }

@@ -28,6 +28,8 @@ inline constexpr double k_least_tilt_error = 1e-5;    ///< rad
 inline constexpr double k_least_slide_error = 1e-4;   ///< m
 inline constexpr double k_least_stress_error = 5e-4;  ///< of the stress
 
+inline constexpr double k_steps_of_bounce = 20;
+
 /// The same run at half the step and a tenth of the tolerance; implicit substeps of rigid bodies follow the
 /// tolerance at fixed steps too. Not for statics.
 Setup refined(const Setup& setup);
@@ -40,8 +42,9 @@ bool is_by_tolerance(const Parameters& parameters);
 /// Stated errors of one body: k_error_of_difference times the difference; of the time of a fall more where it
 /// comes later at finer steps, since what nearly balances takes ever longer. Absent: the quantity does not
 /// exist in one of the runs, or they are on different courses, where small differences decide, or the
-/// greatest tilt is the one from which the body was let go. Of what fell
-/// the stress is that of its landing, whose error follows no order.
+/// greatest tilt is the one from which the body was let go. Of what fell,
+/// and of a frame that lands in fixed steps longer than its bounce over k_steps_of_bounce (contact_period),
+/// the stress is that of a blow, whose error follows no order.
 struct BodyError {
   bool overturned = false, overturned_refined = false;
   int impacts = 0, impacts_refined = 0;     ///< before it overturned, or in all

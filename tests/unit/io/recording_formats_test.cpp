@@ -156,7 +156,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Kept{"format-10-topple-15", 10, "topple-15", true},
                       Kept{"format-10-topple-16", 10, "topple-16", true},
                       Kept{"format-10-topple-17", 10, "topple-17", true},
-                      Kept{"format-10-topple-18", 10, "topple-18", true}),
+                      Kept{"format-10-topple-18", 10, "topple-18", true},
+                      Kept{"format-10-topple-19", 10, "topple-19", true}),
     [](const auto& kept) {
       std::string name = kept.param.name;
       std::ranges::replace(name, '-', '_');
