@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "solver/io/common/nearest_name.h"
 #include "solver/io/scene/scene_keys.h"
 
 namespace topple::io {
@@ -20,6 +21,12 @@ std::string joined(const std::vector<std::string_view>& words, std::string_view 
     text += word;
   }
   return text;
+}
+
+/// "; the nearest is law"; empty: none is near.
+std::string nearest_in_words(std::string_view word, const std::vector<std::string_view>& known) {
+  const std::string nearest = nearest_name(word, {known.begin(), known.end()});
+  return nearest.empty() ? "" : "; the nearest is " + nearest;
 }
 
 std::string below(const std::string& path, std::string_view name) {
@@ -72,9 +79,15 @@ class Checker {
         if (other.table == table) names.push_back(other.name);
       }
       std::sort(names.begin(), names.end());
+      std::vector<std::string_view> meant = names;
+      if (table == "furniture")
+        for (const std::string_view body : k_furniture_bodies)
+          for (const Key& other : scene_keys())
+            if (other.table == body) meant.push_back(other.name);
       fail(item.key_place, below(path, item.key),
            "unknown key; known: " + joined(names) +
-               (table == "furniture" ? ", and keys of the body that it becomes" : ""));
+               (table == "furniture" ? ", and keys of the body that it becomes" : "") +
+               nearest_in_words(item.key, meant));
     }
     return *key;
   }
@@ -208,7 +221,8 @@ class Checker {
       fail(node.place, path, "expected one of " + joined(key.choices) + ", found " + shown(node));
     }
     if (!contains(key.choices, node.text)) {
-      fail(node.place, path, shown(node) + " is not one of " + joined(key.choices));
+      fail(node.place, path,
+           shown(node) + " is not one of " + joined(key.choices) + nearest_in_words(node.text, key.choices));
     }
   }
 
@@ -242,7 +256,7 @@ class Checker {
       if (contains(key.choices, node.text)) return;
       fail(node.place, path,
            shown(node) + " is not one of " + joined(key.choices) + ", nor a list of " +
-               std::to_string(key.count) + " values");
+               std::to_string(key.count) + " values" + nearest_in_words(node.text, key.choices));
     }
     if (key.least_count == 1 && (node.kind == Node::Kind::text || node.is_number()))
       return number(key, node, path);

@@ -333,6 +333,9 @@ TEST(FurnitureErrors, name_file_line_and_key) {
          "s.toml:9:9: furniture.bookshelf.nodes: is no key of a [[cabinet]], which a bookshelf becomes");
   begins(refused_piece(shelf + "shelfs = 3\n"),
          "s.toml:9:1: furniture.bookshelf.shelfs: unknown key; known: against, at, beside, ");
+  const std::string mistyped = refused_piece(shelf + "shelfs = 3\n");
+  EXPECT_TRUE(mistyped.ends_with(", and keys of the body that it becomes; the nearest is shelves"))
+      << mistyped;
   begins(refused_piece(shelf + "section = \"box 30\"\n"),
          "s.toml:9:11: furniture.bookshelf.section: there is no [[section]] \"box 30\"");
   begins(refused_piece("[[furniture]]\nname = \"a\"\nkind = \"desk\"\n[[furniture]]\nname = \"a\"\nkind = "

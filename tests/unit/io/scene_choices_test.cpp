@@ -47,8 +47,9 @@ TEST(SceneChoices, keys_of_another_analysis_are_refused) {
             "no error");
   EXPECT_EQ(error_of(k_scene, {"run.analysis=static", "run.duration=1"}),
             "--set run.duration=1: run.duration" + but);
-  EXPECT_EQ(after_beam("[contact]\nrestitution = 0.5\n[run]\nanalysis = \"statik\"\n"),
-            "s.toml:20:12: run.analysis: \"statik\" is not one of dynamic, static, modes");
+  EXPECT_EQ(
+      after_beam("[contact]\nrestitution = 0.5\n[run]\nanalysis = \"statik\"\n"),
+      "s.toml:20:12: run.analysis: \"statik\" is not one of dynamic, static, modes; the nearest is static");
 }
 
 TEST(SceneChoices, keys_of_a_choice_not_made_are_refused) {

@@ -13,12 +13,12 @@ TEST(SceneErrors, unknown_keys_list_the_known_ones) {
       "s.toml:18:3: contact.foo: unknown key; known: alpha, friction, friction_static, law, member_share, "
       "normal_speed, q, restitution, slip_speed, surfaces");
   EXPECT_EQ(after_beam("[[probe]]\nbdy = 1\n"),
-            "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node");
+            "s.toml:18:1: probe.1.bdy: unknown key; known: body, name, node; the nearest is body");
   EXPECT_EQ(
       error_of("tople = 1\n" + k_scene),
       "s.toml:1:1: tople: unknown key; known: anchor, block, cabinet, ceiling, contact, door, expect, "
       "fixing, floor, frame, furniture, kind, material, place, probe, run, section, shake, title, topple, "
-      "wall");
+      "wall; the nearest is topple");
   EXPECT_EQ(error_of(replaced(k_scene, "supports = [{ node = 0,", "supports = [{ node = 0, fx = 1,")),
             "s.toml:16:25: frame.beam.supports.1.fx: unknown key; known: fix, node");
 }
@@ -165,8 +165,9 @@ TEST(SceneErrors, wrong_types_say_what_was_found) {
             "s.toml:18:9: contact.alpha: expected a force (N, kN, MN, kgf), found a list");
   EXPECT_EQ(after_beam("[contact]\nlaw = 3\n"),
             "s.toml:18:7: contact.law: expected one of coulomb, paper, printed, found 3");
-  EXPECT_EQ(after_beam("[contact]\nlaw = \"coulom\"\n"),
-            "s.toml:18:7: contact.law: \"coulom\" is not one of coulomb, paper, printed");
+  EXPECT_EQ(
+      after_beam("[contact]\nlaw = \"coulom\"\n"),
+      "s.toml:18:7: contact.law: \"coulom\" is not one of coulomb, paper, printed; the nearest is coulomb");
   EXPECT_EQ(after_beam("[run]\nsettle = 1\n"), "s.toml:18:10: run.settle: expected true or false, found 1");
   EXPECT_EQ(after_beam("[run]\nwant = \"motion\"\n"),
             "s.toml:18:8: run.want: expected a list of some of motion, stress, found \"motion\"");
@@ -179,9 +180,9 @@ TEST(SceneErrors, wrong_types_say_what_was_found) {
             "(m/s^2, cm/s^2, gal, g)");
   EXPECT_EQ(in_cabinet("shelves = 2.5\n"),
             "s.toml:16:11: cabinet.free.shelves: expected an integer, found 2.5");
-  EXPECT_EQ(
-      in_cabinet("inertia = \"panel\"\n"),
-      "s.toml:16:11: cabinet.free.inertia: \"panel\" is not one of panels, solid, nor a list of 3 values");
+  EXPECT_EQ(in_cabinet("inertia = \"panel\"\n"),
+            "s.toml:16:11: cabinet.free.inertia: \"panel\" is not one of panels, solid, nor a list of 3 "
+            "values; the nearest is panels");
   EXPECT_EQ(after_beam("[[run]]\n"), "s.toml:17:1: run: expected a table [run], found a list");
   EXPECT_EQ(after_beam("[shake]\n"), "s.toml:17:1: shake: expected [[shake]], found a table");
   EXPECT_EQ(error_of("title = 3\n" + k_scene), "s.toml:1:9: title: expected text, found 3");
