@@ -60,7 +60,7 @@ std::string estimate_in_words(const ordered_json& e, const ordered_json& bodies)
   };
   std::string words = part("overturning", "overturn_time_s", 1, "s", study::k_least_time_error) +
                       part("peak tilt", "peak_tilt_deg", 1, "deg", study::k_least_tilt_error * k_degrees) +
-                      part("slide", "peak_slide_m", 1e3, "mm", study::k_least_slide_error) +
+                      part("base moved", "peak_slide_m", 1e3, "mm", study::k_least_slide_error) +
                       part("peak stress", "peak_stress_Pa", 1e-6, "MPa", 0);
   words.resize(words.size() - std::min<std::size_t>(words.size(), 2));
   bool blow = false;  // decides a stress
@@ -402,7 +402,7 @@ std::string outcome_rows(const ordered_json& s, int width, const char* when) {
   }
   std::string out =
       fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "body", width, "overturned",
-                  "uplift", "impacts", "peak tilt", "final tilt", "peak slide", "peak stress");
+                  "uplift", "impacts", "peak tilt", "final tilt", "base moved", "peak stress");
   out += fmt::format("{:<{}} {:>12} {:>9} {:>8} {:>10} {:>10} {:>10} {:>11}\n", "", width, when, when, "",
                      "deg", "deg", "mm", "MPa");
   for (const auto& b : s["bodies"])

@@ -272,7 +272,7 @@ void add_outcome(Table& table, const ordered_json& body) {
     row(what, [&](const ordered_json& o) { return text(o, key, unit, decimals); });
   };
   number("peak tilt, deg", "peak_tilt_deg", 1, 3);
-  number("peak slide, mm", "peak_slide_m", 1e-3, 2);
+  number("base moved, mm", "peak_slide_m", 1e-3, 2);
   number("first uplift, s", "first_uplift_s", 1, 3);
   number("first impact, s", "first_impact_s", 1, 3);
   number("peak stress, MPa", "peak_stress_Pa", 1e6, 2);

@@ -137,7 +137,7 @@ inline constexpr Phrase k_uplift{"first uplift, s", "最初の浮上り [s]"};
 inline constexpr Phrase k_impacts{"impacts", "衝突回数"};
 inline constexpr Phrase k_tilt{"peak tilt, °", "最大傾斜角 [°]"};
 inline constexpr Phrase k_critical{"critical angle, °", "転倒限界角 [°]"};
-inline constexpr Phrase k_slide{"peak slide, mm", "最大すべり [mm]"};
+inline constexpr Phrase k_slide{"base moved, mm", "台座の移動 [mm]"};
 inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
 inline constexpr Phrase k_table_note{
     "Overturns: the tilt passes the critical angle (centre of gravity, with what stands on the body, above "
@@ -147,7 +147,8 @@ inline constexpr Phrase k_table_note{
     "to it, which may be another instant than that of the peak tilt; an edge's where it leaned across one, "
     "and "
     "the nearest edge's of a body that leaned by less than {1}°. "
-    "Slide: travel of the middle of the base along the floor or the piece that it stands on. Uplift: one "
+    "Base moved: the middle of the base along the floor or the piece that it stands on, at most; of what "
+    "tips it grows with the tilt, too. Uplift: one "
     "side of the base "
     "carries less than "
     "{0} % of the weight while it turns by {1}° or more, and an impact ends it. ±: stated error of the time "
@@ -155,8 +156,8 @@ inline constexpr Phrase k_table_note{
     "転倒：傾斜角が転倒限界角（載っている物を含めた重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らな"
     "いこと。限界角は、それに最も"
     "近づいた時刻に傾いていた側の値（最大傾斜角の時刻とは異なることがある。傾斜角が{1}"
-    "°未満の場合は最も近い縁の値）。すべり："
-    "床または載っている家具に対する底面中心の移動量。"
+    "°未満の場合は最も近い縁の値）。台座の移動："
+    "床または載っている家具に沿った底面中央の移動量の最大値（傾くと、傾斜によっても増える）。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
     "±は時間積分のみの推定誤差（第{2}節）。"};
 inline constexpr Phrase k_stress_note{

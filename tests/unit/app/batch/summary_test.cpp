@@ -293,7 +293,7 @@ TEST(Terms, a_share_of_a_strength_is_rounded_and_never_whole_before_it_is) {
 TEST_F(SummaryTest, an_error_of_time_integration_that_is_the_least_one_is_an_upper_bound) {
   Json s = summary(scene_, run_, "completed", 0);
   s["error_estimate"] = error_estimate(scene_.setup, run_.outcome(), run_.outcome());
-  EXPECT_NE(summary_table(s).find("peak tilt less than 0.00057 deg, slide less than 0.1 mm"),
+  EXPECT_NE(summary_table(s).find("peak tilt less than 0.00057 deg, base moved less than 0.1 mm"),
             std::string::npos)
       << summary_table(s);
   s["error_estimate"]["bodies"][0]["peak_tilt_deg"] = 0.0006;
