@@ -202,16 +202,15 @@ std::string holding_table(ReportPage& page) {
   return page.table(head, rows) + (assumed ? page.paragraph(page.say(words::k_assumed_fixings), "note") : "");
 }
 
-/// Bodies that no anchor holds, and that fare differently without those of the others.
+/// Bodies that nothing holds, and that fare differently without what holds the others.
 std::string differ_unheld(const ReportPage& page, const ordered_json& without) {
-  const Model& model = page.report().scene->setup.model;
+  const Setup& setup = page.report().scene->setup;
   std::string names;
   for (std::size_t b = 0; b < page.bodies().size(); ++b) {
-    const auto holds = [&](const Anchor& anchor) {
-      return anchor.body == static_cast<int>(b) || anchor.other.body == static_cast<int>(b);
-    };
+    const int body = static_cast<int>(b);
+    const auto lifts = [&](const Wedge& wedge) { return wedge.body == body && wedge.in_place(); };
     if (page.bodies()[b]["overturned"] == without["bodies"][b]["overturned"] ||
-        std::ranges::any_of(model.anchors, holds))
+        is_held(setup.model, setup.parameters, body) || std::ranges::any_of(setup.wedges, lifts))
       continue;
     names += (names.empty() ? "" : ", ") + page.name(b);
   }
@@ -257,6 +256,16 @@ std::string anchors_section(ReportPage& page) {
   for (const Phrase* what : {&words::k_verdict, &words::k_overturn_time, &words::k_tilt, &words::k_slide})
     for (const std::string& cell : pair(*what)) head.push_back(cell);
   out += page.table(head, rows);
+  if (page.shows_ways()) {
+    std::vector<std::vector<std::string>> ways;
+    for (std::size_t p = 0; p < without["ways"].size(); ++p) {
+      const ordered_json &with = page.report().summary["ways"][p], &bare = without["ways"][p];
+      ways.push_back(
+          {escaped(with["place"].get<std::string>()), way_in_words(page, with), way_in_words(page, bare)});
+    }
+    const std::vector<std::string> way = pair(words::k_way);
+    out += page.table({page.say(words::k_place), way[0], way[1]}, ways);
+  }
   if (const std::string names = differ_unheld(page, without); !names.empty())
     out += page.paragraph(page.say(words::k_unheld_differ, names), "note");
   out += page.list(words::k_warnings_without, warned_without(page, without));

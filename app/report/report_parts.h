@@ -67,6 +67,9 @@ std::string short_shown(double value, int digits = 4);
 std::string with_error(const nlohmann::ordered_json& value, const nlohmann::ordered_json& error, double unit,
                        int most);
 
+/// Of a place, whether one still gets out; a dash where there is no door.
+std::string way_in_words(const ReportPage& page, const nlohmann::ordered_json& way);
+
 std::string floor_section(ReportPage& page);
 std::string falling_section(ReportPage& page);
 std::string ways_section(ReportPage& page);

@@ -279,8 +279,7 @@ std::string table(const ReportPage& page, const ordered_json& ways) {
       hits += (hits.empty() ? "" : ", ") + page.say(words::k_hit_at, hit["body"].get<std::string>(),
                                                     shown(hit["time_s"].get<double>(), 2));
     const bool any = !way["open"].is_null();
-    rows.push_back({escaped(way["place"].get<std::string>()),
-                    !any ? "\u2013" : page.say(way["open"].get<bool>() ? words::k_open_way : words::k_no_way),
+    rows.push_back({escaped(way["place"].get<std::string>()), way_in_words(page, way),
                     any ? escaped(way["door"].get<std::string>()) : "\u2013",
                     with_error(way["before"]["widest_m"], nullptr, 1, 3),
                     with_error(way["widest_m"], nullptr, 1, 3), with_error(way["length_m"], nullptr, 1, 1),
@@ -295,6 +294,11 @@ std::string table(const ReportPage& page, const ordered_json& ways) {
 }
 
 }  // namespace
+
+std::string way_in_words(const ReportPage& page, const ordered_json& way) {
+  if (way["open"].is_null()) return "\u2013";
+  return page.say(way["open"].get<bool>() ? words::k_open_way : words::k_no_way);
+}
 
 std::string ways_section(ReportPage& page) {
   const Report& report = page.report();

@@ -248,7 +248,7 @@ inline constexpr Phrase k_assumed_fixings{
     "名称で指定した固定具の剛性と強度は、入力にあればその値、なければ仮定値であり、特定の製品を表すものではな"
     "い。"};
 inline constexpr Phrase k_unheld_differ{
-    "No anchor holds {0}: what differs there comes of knocks by what they hold, or of small differences that "
+    "Nothing holds {0}: what differs there comes of knocks by what they hold, or of small differences that "
     "grow; the "
     "probabilities tell more.",
     "{0}は固定されていない。この違いは、固定された家具との衝突か、成長したわずかな差によるものであり、"

@@ -98,6 +98,55 @@ TEST_F(ReportPageTest, what_the_run_without_anchors_is_warned_of_stands_beside_i
   EXPECT_TRUE(holds(page(Language::japanese), "固定なしの計算に対するプログラムの警告（英語）："));
 }
 
+// A place that has no door, too.
+TEST_F(ReportPageTest, who_gets_out_is_compared_with_and_without_what_holds) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  tell_of(scene);
+  const auto way = [](const char* place, const Json& open) {
+    return Json{{"place", place},
+                {"door", "door"},
+                {"open", open},
+                {"widest_m", 0.6},
+                {"length_m", 2.},
+                {"caught", false},
+                {"hit_by", Json::array()},
+                {"blocked_by", Json::array()},
+                {"before", {{"open", true}, {"widest_m", 0.6}}}};
+  };
+  report_.summary["person_m"] = 0.5;
+  report_.summary["ways"] = {way("desk", true), way("cell", nullptr)};
+  report_.nodes_at_start = report_.nodes_at_end = scene.setup.model.node_position;
+  report_.without_anchors = report_.summary;
+  (*report_.without_anchors)["ways"][0]["open"] = false;
+  const std::string html = page();
+  EXPECT_TRUE(
+      holds(html, "<th scope=\"col\">way, with anchors</th><th scope=\"col\">way, without anchors</th>"));
+  EXPECT_TRUE(holds(html, "<th scope=\"row\">desk</th><td>open</td><td>closed</td>"));
+  EXPECT_TRUE(holds(html, "<th scope=\"row\">cell</th><td>\u2013</td><td>\u2013</td>"));
+  EXPECT_TRUE(holds(page(Language::japanese), "<td>通れる</td><td>通れない</td>"));
+}
+
+TEST_F(ReportPageTest, what_a_stopper_lifts_is_held_and_what_an_anchor_away_held_is_not) {
+  const std::string said = "Nothing holds box: what differs there";
+  const auto is_told = [&](const std::string& more, std::vector<std::string> changes) {
+    const io::Scene scene = io::parse_scene(k_lone_block + more, "s.toml", changes);
+    tell_of(scene);
+    report_.without_anchors = report_.summary;
+    (*report_.without_anchors)["bodies"][0]["overturned"] = true;
+    return holds(page(), said);
+  };
+  const std::string stopper =
+      "[[wall]]\nname = \"back\"\nat = [-0.26, 0]\nnormal = [1, 0, 0]\n[[fixing]]\nname = \"stop\"\nbody = "
+      "\"box\"\nkind = \"stopper\"\nto = \"floor\"\n";
+  const std::string strap =
+      "[[anchor]]\nname = \"strap\"\nbody = \"box\"\npoint = [0, 0, 1.8]\nto = [-1, 0, 1.8]\n"
+      "stiffness = 1e4\n";
+  EXPECT_FALSE(is_told(stopper, {}));
+  EXPECT_TRUE(is_told(stopper, {"fixing.stop.on=false"}));
+  EXPECT_FALSE(is_told(strap, {}));
+  EXPECT_TRUE(is_told(strap, {"anchor.strap.on=false"}));
+}
+
 // 50 kN/m and 2 kN, and what the summary says of the run.
 TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
   const io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
