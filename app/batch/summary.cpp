@@ -351,7 +351,18 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
   out["disagreements"] = std::move(disagreements);
   out["parted"] = std::move(parted);
   out["bodies"] = std::move(bodies);
+  out["anchors"] = ordered_json::array();
+  const std::vector<std::optional<double>> forces = study::anchor_errors(setup, run, finer);
+  for (std::size_t k = 0; k < forces.size(); ++k)
+    out["anchors"].push_back({{"name", setup.model.anchors[k].name}, {"peak_force_N", number(forces[k])}});
   return out;
+}
+
+ordered_json force_error(const ordered_json& summary, std::size_t anchor) {
+  const ordered_json estimate = summary.value("error_estimate", ordered_json());
+  if (!estimate.contains("anchors")) return nullptr;
+  const ordered_json& error = estimate["anchors"][anchor]["peak_force_N"];
+  return error == 0 ? ordered_json(nullptr) : error;
 }
 
 ordered_json failed_estimate(const Setup& setup, const std::string& message) {

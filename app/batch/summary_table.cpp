@@ -33,6 +33,10 @@ std::string text(const ordered_json& value, const char* format) {
   return value.is_null() ? "-" : fmt::format(fmt::runtime(format), value.get<double>());
 }
 
+std::string two_digits(double error) {
+  return error < 100 ? fmt::format("{:.2g}", error) : fmt::format("{:.0f}", error);
+}
+
 /// The line about `error_estimate` of a run of `bodies`.
 std::string estimate_in_words(const ordered_json& e, const ordered_json& bodies) {
   const std::string begin = fmt::format("error of the time integration ({}): ", e["how"].get<std::string>());
@@ -54,9 +58,8 @@ std::string estimate_in_words(const ordered_json& e, const ordered_json& bodies)
     for (const ordered_json& body : e["bodies"])
       if (!body[key].is_null()) error = std::max(error, body[key].get<double>());
     if (error < 0) return std::string();
-    const double shown = scale * error;
     return fmt::format("{} {}{} {}, ", name, error > (1 + 1e-9) * least ? "" : "less than ",
-                       shown < 100 ? fmt::format("{:.2g}", shown) : fmt::format("{:.0f}", shown), unit);
+                       two_digits(scale * error), unit);
   };
   std::string words = part("overturning", "overturn_time_s", 1, "s", study::k_least_time_error) +
                       part("peak tilt", "peak_tilt_deg", 1, "deg", study::k_least_tilt_error * k_degrees) +
@@ -322,12 +325,13 @@ std::string chance_line(const ordered_json& b) {
       fell ? "keep it upright" : "topple it");
 }
 
-std::string anchor_line(const ordered_json& a, const char* when) {
+std::string anchor_line(const ordered_json& a, const ordered_json& error, const char* when) {
   const double peak = a["peak_force_N"].get<double>();
   std::string line = a["fixing"].is_null() ? "" : fixing_line(a) + "\n";
   if (was_never_in_place(a))
     return line + fmt::format("anchor {}: not in place\n", a["name"].get<std::string>());
-  line += fmt::format("anchor {}: greatest force {:.4g} N", a["name"].get<std::string>(), peak);
+  line += fmt::format("anchor {}: greatest force {:.4g}{} N", a["name"].get<std::string>(), peak,
+                      error.is_null() ? "" : " ± " + two_digits(error.get<double>()));
   if (a["broke"].get<bool>())
     return line + fmt::format(", broke at {} {}\n", text(a["break_time_s"], "{:.4f}"), when);
   if (!a["strength_N"].is_null())
@@ -434,7 +438,8 @@ std::string summary_table(const ordered_json& s) {
   for (const auto& b : s["bodies"])
     if (!is_static) out += lately_line(b, s["simulated_s"]) + chance_line(b);
   for (const auto& b : s["bodies"]) out += damage_line(b);
-  for (const auto& a : s["anchors"]) out += anchor_line(a, when);
+  for (std::size_t k = 0; k < s["anchors"].size(); ++k)
+    out += anchor_line(s["anchors"][k], force_error(s, k), when);
   for (const auto& w : s["wedges"]) out += wedge_line(w) + "\n";
   if (s.contains("error_estimate") && !s["error_estimate"].is_null())
     out += estimate_in_words(s["error_estimate"], s["bodies"]);

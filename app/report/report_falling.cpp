@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "app/batch/summary.h"
 #include "app/report/report_parts.h"
 #include "app/support/base64.h"
 #include "app/support/terms.h"
@@ -167,7 +168,9 @@ namespace {
 std::string holding_table(ReportPage& page) {
   std::vector<std::vector<std::string>> rows;
   bool assumed = false;
-  for (const ordered_json& a : page.report().summary["anchors"]) {
+  const ordered_json& anchors = page.report().summary["anchors"];
+  for (std::size_t k = 0; k < anchors.size(); ++k) {
+    const ordered_json &a = anchors[k], error = force_error(page.report().summary, k);
     const bool fixing = !a["fixing"].is_null(), bounded = !a["strength_N"].is_null();
     assumed = assumed || fixing;
     const double peak = a["peak_force_N"].get<double>();
@@ -184,7 +187,10 @@ std::string holding_table(ReportPage& page) {
                     escaped(a[fixing ? "fixing" : "type"].get<std::string>()),
                     short_shown(a["stiffness_N_m"].get<double>() / 1e3),
                     bounded ? short_shown(a["strength_N"].get<double>()) : "\u2013",
-                    never ? "\u2013" : short_shown(peak), share});
+                    never             ? "\u2013"
+                    : error.is_null() ? short_shown(peak)
+                                      : with_error(peak, error, 1, 1),
+                    share});
   }
   for (const ordered_json& w : page.report().summary["wedges"]) {
     assumed = true;

@@ -27,6 +27,7 @@ inline constexpr double k_least_time_error = 1e-5;    ///< s
 inline constexpr double k_least_tilt_error = 1e-5;    ///< rad
 inline constexpr double k_least_slide_error = 1e-4;   ///< m
 inline constexpr double k_least_stress_error = 5e-4;  ///< of the stress
+inline constexpr double k_least_force_error = 5e-4;   ///< of the force
 
 inline constexpr double k_steps_of_bounce = 20;
 
@@ -74,5 +75,10 @@ struct BodyError {
 
 /// One of each body of `run` that is furniture. Both are outcomes of `setup`, but for their steps.
 std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outcome& finer);
+
+/// N, stated errors of the greatest forces of the anchors. Absent: it was never in place, broke in one of the
+/// runs alone, or a body that it is attached to overturned, whose landing follows no order.
+std::vector<std::optional<double>> anchor_errors(const Setup& setup, const Outcome& run,
+                                                 const Outcome& finer);
 
 }  // namespace topple::study

@@ -118,6 +118,32 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_the_stress_of_adaptive_s
 }
 
 // It slides and rattles: 25 impacts, 20 when refined, other tolerances 17 to 57.
+TEST(Refinement, the_stated_error_holds_the_true_one_of_what_anchors_bear) {
+  const io::Scene scene = io::load_scene("anchored", {"run.duration=3"});
+  const Outcome run = outcome(scene.setup), truth = outcome(exactly(scene.setup, 4));
+  const auto stated = anchor_errors(scene.setup, run, outcome(compared(scene.setup)));
+  ASSERT_EQ(stated.size(), 2u);
+  for (std::size_t k = 0; k < stated.size(); ++k) {
+    ASSERT_TRUE(stated[k]);
+    EXPECT_GT(run.anchors()[k].peak_force, 0);
+    EXPECT_LE(std::abs(run.anchors()[k].peak_force - truth.anchors()[k].peak_force), k_slack * *stated[k]);
+  }
+  // one breaks in one of the runs alone; then all do in both, and what they held falls
+  topple::Setup weak = scene.setup;
+  weak.model.anchors[0].strength = 1;
+  EXPECT_FALSE(anchor_errors(scene.setup, run, outcome(weak))[0]);
+  for (Anchor& anchor : weak.model.anchors) anchor.strength = 1;
+  weak.run.duration = 10;
+  const Outcome falls = outcome(weak);
+  ASSERT_TRUE(falls.bodies()[0].beyond_since);
+  EXPECT_FALSE(anchor_errors(weak, falls, falls)[0]);
+  topple::Setup one = scene.setup;
+  one.parameters.anchors = {false, true};
+  const auto of_one = anchor_errors(one, outcome(one), outcome(one));
+  EXPECT_FALSE(of_one[0]);
+  EXPECT_TRUE(of_one[1]);
+}
+
 TEST(Refinement, what_stands_on_one_course_of_many_is_seen) {
   const topple::Setup setup = io::load_scene("desk", {"shake.1.amplitude=460 gal"}).setup;
   const BodyError stated = errors(setup, outcome(setup), outcome(compared(setup)))[0];

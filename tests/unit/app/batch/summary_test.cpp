@@ -1,5 +1,6 @@
 #include "app/batch/summary.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -298,6 +299,30 @@ TEST_F(SummaryTest, an_error_of_time_integration_that_is_the_least_one_is_an_upp
       << summary_table(s);
   s["error_estimate"]["bodies"][0]["peak_tilt_deg"] = 0.0006;
   EXPECT_NE(summary_table(s).find("peak tilt 0.0006 deg, "), std::string::npos);
+}
+
+TEST(Summary, the_stated_error_of_what_an_anchor_bore_stands_beside_its_force) {
+  const io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml", {"anchor.weak.on=false"});
+  const auto ended = [](const topple::Setup& setup) {
+    topple::Run run(setup);
+    while (!run.over()) EXPECT_TRUE(run.advance().ok());
+    return run;
+  };
+  topple::Run run = ended(scene.setup), finer = ended(study::compared(scene.setup));
+  Json s = summary(scene, run, "completed", 1);
+  EXPECT_EQ(summary_table(s).find(" ± "), std::string::npos);
+  s["error_estimate"] = error_estimate(scene.setup, run.outcome(), finer.outcome());
+  const Json& errors = s["error_estimate"]["anchors"];
+  ASSERT_EQ(errors.size(), 2u);
+  EXPECT_EQ(errors[0]["name"], "weak");
+  EXPECT_TRUE(errors[0]["peak_force_N"].is_null());
+  const double force = run.outcome().anchors()[1].peak_force, other = finer.outcome().anchors()[1].peak_force;
+  const double stated = std::max(2 * std::abs(force - other), 5e-4 * force);
+  EXPECT_DOUBLE_EQ(errors[1]["peak_force_N"].get<double>(), stated);
+  EXPECT_NE(
+      summary_table(s).find(fmt::format("anchor strong: greatest force {:.4g} ± {:.2g} N", force, stated)),
+      std::string::npos)
+      << summary_table(s);
 }
 
 TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {

@@ -153,11 +153,14 @@ TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of
   tell_of(scene);
   report_.without_anchors = report_.summary;
   const double force = report_.summary["anchors"][1]["peak_force_N"];
+  report_.summary["error_estimate"]["anchors"][1]["peak_force_N"] = nullptr;
   ASSERT_GT(force, 0);
   const std::string html = page();
   EXPECT_TRUE(holds(html, "<th scope=\"row\">strong</th>"));
   EXPECT_TRUE(holds(html, fmt::format("<td>50</td><td>2000</td><td>{:.4g}</td><td>{:.0f} %</td>", force,
                                       100 * force / 2000)));
+  report_.summary["error_estimate"]["anchors"][1]["peak_force_N"] = 3;
+  EXPECT_TRUE(holds(page(), fmt::format("<td>50</td><td>2000</td><td>{:.0f} ± 3</td>", force)));
   EXPECT_TRUE(holds(html, "<td>50</td><td>1</td>"));
   EXPECT_TRUE(holds(html, "<td>breaks at "));
   for (int k = 0; k < 21; ++k)
