@@ -14,7 +14,7 @@
 #include "app/page/page_words.h"
 #include "app/page/verdict.h"
 #include "app/picture/replay.h"
-#include "app/picture/window_words.h"
+#include "app/picture/words.h"
 #include "app/report/svg_chart.h"
 #include "app/support/base64.h"
 #include "app/support/errors.h"
@@ -260,8 +260,8 @@ std::string page_of(const io::Scene& scene, const PageRun& run, Language languag
   const std::vector<PlaceOutcome> hits = hits_of(summary, scene.setup.model, *rows);
   const ReplayOnly only = why_replay_only(scene, run);
   std::string title = scene.title.empty() ? scene.name : scene.title;
-  if (run.edited && !title.ends_with(io::k_title_changed))
-    title = say_in(language, window_words::k_title_changed, title);
+  if (run.edited && !title.ends_with(io::k_title_changed)) title += io::k_title_changed;
+  title = title_in(language, title);
   return filled(page_template(),
                 {{"@LANGUAGE@", language == Language::japanese ? "ja" : "en"},
                  {"@TITLE@", escaped(title)},

@@ -163,12 +163,16 @@ std::string when_in_words(const Shake& shake, double t) {
 
 }  // namespace
 
-std::string in_window_language(const std::string& title) {
+std::string title_in(Language language, const std::string& title) {
   const bool changed = title.ends_with(io::k_title_changed);
   const std::string plain = title.substr(0, title.size() - (changed ? io::k_title_changed.size() : 0));
   const auto* const known = ranges::find(title_words::k_titles, plain, &Phrase::english);
-  const std::string shown = known == std::end(title_words::k_titles) ? plain : say(*known);
-  return changed ? say(k_title_changed, shown) : shown;
+  const std::string shown = known == std::end(title_words::k_titles) ? plain : say_in(language, *known);
+  return changed ? say_in(language, k_title_changed, shown) : shown;
+}
+
+std::string in_window_language(const std::string& title) {
+  return title_in(window_language(), title);
 }
 
 std::string title_in_words(const io::Scene& scene, const Parameters& parameters, bool changed) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/picture/words.h"
 #include "app/report/page_style.h"
 #include "app/report/report_parts.h"
 #include "app/support/terms.h"
@@ -269,7 +270,8 @@ std::string with_error(const ordered_json& value, const ordered_json& error, dou
 
 std::string report_page(const Report& report, Language language) {
   ReportPage page(report, language);
-  const std::string title = escaped(report.scene->title.empty() ? report.scene->name : report.scene->title);
+  const std::string title =
+      escaped(report.scene->title.empty() ? report.scene->name : title_in(language, report.scene->title));
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"generator\" "

@@ -147,6 +147,14 @@ TEST_F(ReportPageTest, what_a_stopper_lifts_is_held_and_what_an_anchor_away_held
   EXPECT_TRUE(is_told(strap, {"anchor.strap.on=false"}));
 }
 
+TEST_F(ReportPageTest, titles_of_built_in_scenes_are_in_the_language_of_the_page) {
+  scene_.title = "A cantilever under a sudden tip load";
+  EXPECT_TRUE(holds(page(), "<h1>A cantilever under a sudden tip load</h1>"));
+  EXPECT_TRUE(holds(page(Language::japanese), "<h1>先端に急に荷重がかかる片持ち梁</h1>"));
+  scene_.title += " (changed)";
+  EXPECT_TRUE(holds(page(Language::japanese), "<h1>先端に急に荷重がかかる片持ち梁（変更あり）</h1>"));
+}
+
 // 50 kN/m and 2 kN, and what the summary says of the run.
 TEST_F(ReportPageTest, an_anchor_stands_with_its_name_its_force_and_its_share_of_the_strength) {
   const io::Scene scene = io::parse_scene(k_shaken + k_straps + "strength = \"2 kN\"\n", "s.toml");
