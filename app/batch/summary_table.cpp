@@ -391,6 +391,17 @@ std::string stress_text(const ordered_json& b) {
                                        : fmt::format("{:.2f}", 1e-6 * b["peak_stress_Pa"].get<double>());
 }
 
+/// Of a run that ended before its time.
+std::string until_when(const ordered_json& s) {
+  static constexpr std::pair<std::string_view, const char*> k_ends[] = {
+      {"stopped", "stopped"}, {"diverged", "diverged"}, {"interrupted", "was interrupted"}};
+  const auto* const end =
+      std::ranges::find(k_ends, s["status"].get<std::string>(), [](const auto& row) { return row.first; });
+  if (end == std::end(k_ends)) return "";
+  return fmt::format("all that follows is until {} s, where the run {}; what comes later is not known\n",
+                     text(s["simulated_s"], "{:.6g}"), end->second);
+}
+
 /// A row for each body; of loads on frames that are held, which have no angle to fall at, their stress alone.
 std::string outcome_rows(const ordered_json& s, int width, const char* when) {
   const bool can_fall =
@@ -429,6 +440,7 @@ std::string summary_table(const ordered_json& s) {
   int width = 14;
   for (const auto& b : s["bodies"])
     width = std::max(width, static_cast<int>(letters(b["name"].get<std::string>())));
+  if (!is_static) out += until_when(s);
   out += outcome_rows(s, width, when);
   out += model_lines(s);
   for (const auto& b : s["bodies"])

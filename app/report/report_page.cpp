@@ -171,6 +171,9 @@ std::string result(const ReportPage& page) {
   const Report& report = page.report();
   const std::vector<std::size_t> falls = fallen(page);
   std::string out = page.paragraph(verdict(page), "verdict");
+  if (report.summary["status"] == "stopped")
+    out += page.paragraph(page.say(words::k_until, short_shown(report.summary["simulated_s"].get<double>())),
+                          "notice");
   if (const std::string told = people(page); !told.empty()) out += page.paragraph(told, "verdict");
   if (!report.page.empty())
     out += page.paragraph("<a href=\"" + escaped(address_of(report.page)) + "\">" +

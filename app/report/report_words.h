@@ -45,6 +45,10 @@ inline constexpr Phrase k_is_caught{"“{0}” cannot leave: blocked where they 
                                     "「{0}」の居場所に{1}がかかり、動けない。"};
 inline constexpr Phrase k_ways_stay{"Every place keeps a way out; the narrowest is {0} m wide, from “{1}”.",
                                     "どの場所からも出口まで通れる（最も狭い経路は「{1}」から、幅 {0} m）。"};
+inline constexpr Phrase k_until{
+    "All on this page is until {0} s, where the scene's condition stopped the run; what comes later is not "
+    "known.",
+    "この報告書の結果は、シーンの条件により計算が終了した{0}秒までのもの（その後は不明）。"};
 inline constexpr Phrase k_live_page{"Live page: change the shake or the furniture, and see what falls",
                                     "条件を変えて計算できるページ"};
 inline constexpr Phrase k_replay_page{"Page that replays this run", "この計算結果を再生するページ"};

@@ -325,6 +325,22 @@ TEST(Summary, the_stated_error_of_what_an_anchor_bore_stands_beside_its_force) {
       << summary_table(s);
 }
 
+TEST_F(SummaryTest, of_a_run_that_ended_early_the_table_says_until_when) {
+  while (!run_.over()) ASSERT_TRUE(run_.advance().ok());
+  const auto table = [&](const char* status) {
+    Json s = summary(scene_, run_, status, 1);
+    s["simulated_s"] = 5.46;
+    return summary_table(s);
+  };
+  EXPECT_EQ(table("completed").find("until"), std::string::npos) << table("completed");
+  for (const auto& [status, words] :
+       {std::pair("stopped", "where the run stopped"), std::pair("diverged", "where the run diverged"),
+        std::pair("interrupted", "where the run was interrupted")}) {
+    const std::size_t told = table(status).find(std::string("all that follows is until 5.46 s, ") + words);
+    EXPECT_LT(told, table(status).find("\nbody ")) << table(status);
+  }
+}
+
 TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
   io::Scene strong =
       io::parse_scene(k_shaken, "s.toml", {"shake.table.amplitude=900 gal", "run.duration=2 s"});

@@ -147,6 +147,14 @@ TEST_F(ReportPageTest, what_a_stopper_lifts_is_held_and_what_an_anchor_away_held
   EXPECT_TRUE(is_told(strap, {"anchor.strap.on=false"}));
 }
 
+TEST_F(ReportPageTest, a_run_that_was_stopped_says_until_when_all_of_it_is) {
+  EXPECT_FALSE(holds(page(), "All on this page is until"));
+  report_.summary["status"] = "stopped";
+  report_.summary["simulated_s"] = 5.46;
+  EXPECT_TRUE(holds(page(), "All on this page is until 5.46 s"));
+  EXPECT_TRUE(holds(page(Language::japanese), "5.46秒まで"));
+}
+
 TEST_F(ReportPageTest, titles_of_built_in_scenes_are_in_the_language_of_the_page) {
   scene_.title = "A cantilever under a sudden tip load";
   EXPECT_TRUE(holds(page(), "<h1>A cantilever under a sudden tip load</h1>"));
