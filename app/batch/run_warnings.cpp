@@ -188,7 +188,9 @@ void warn_of_law(const Run& run, Warnings& list) {
 
 void warn_of_energy(const Run& run, Warnings& list) {
   const EnergyLedger& e = run.state().energy;
-  const Phrase& finer = study::is_by_tolerance(run.parameters()) ? ww::k_try_tolerance : ww::k_try_step;
+  const Phrase& finer = study::is_by_tolerance(run.parameters()) ? ww::k_try_tolerance
+                        : run.parameters().adaptive              ? ww::k_try_fixed_step
+                                                                 : ww::k_try_step;
   double weight = 0;
   for (const Body& body : run.setup().model.bodies) weight += body.mass * run.parameters().gravity.norm();
   if (const double balance = e.balance_error();

@@ -74,7 +74,10 @@ inline constexpr Phrase k_law{
     "にはない）"};
 inline constexpr Phrase k_try_tolerance{"try a smaller tolerance or a fixed time_step",
                                         "許容誤差を小さくするか、時間刻みを固定するとよい"},
-    k_try_step{"try a smaller time_step", "時間刻みを小さくするとよい"},
+    k_try_fixed_step{
+        "try a fixed time_step below the mean one: an explicit integrator's steps follow no tolerance",
+        "平均より小さい固定の時間刻みにするとよい（陽解法の刻みは許容誤差によらない）"},
+    k_try_step{"try time_step = \"auto\" or a smaller one", "時間刻みを \"auto\" にするか小さくするとよい"},
     k_try_alpha_method{"gamma above 1/2 damps rigid motion too, generalized-alpha does not",
                        "1/2 を超える γ は剛体運動も減衰させる。一般化α法ならしない"};
 inline constexpr Phrase k_balance{

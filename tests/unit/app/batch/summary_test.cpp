@@ -341,6 +341,27 @@ TEST_F(SummaryTest, of_a_run_that_ended_early_the_table_says_until_when) {
   }
 }
 
+TEST(Summary, advice_on_steps_is_what_changes_them) {
+  const auto is_advised = [](const std::string& words, std::vector<std::string> changes) {
+    const io::Scene scene = io::parse_scene(k_shaken, "s.toml", changes);
+    topple::Run begun(scene.setup);
+    EXPECT_TRUE(begun.advance().ok());
+    State state = begun.state();
+    state.energy.numerical = state.energy.largest = 1;  // J
+    topple::Run run(scene.setup, state, begun.parameters());
+    const Json warnings = summary(scene, run, "stopped", 1)["warnings"];
+    EXPECT_NE(warnings.dump().find("the time integration took"), std::string::npos) << warnings;
+    return std::ranges::any_of(warnings, [&](const Json& warning) {
+      return warning.get<std::string>().find(words) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(is_advised("try time_step = \"auto\" or a smaller one", {}));
+  EXPECT_TRUE(is_advised("try a smaller tolerance", {"run.time_step=auto"}));
+  // its steps follow its limit alone: the run has as many at every tolerance
+  EXPECT_TRUE(is_advised("try a fixed time_step below the mean one",
+                         {"run.time_step=auto", "run.integrator=central-difference"}));
+}
+
 TEST_F(SummaryTest, an_estimate_without_a_verdict_is_words_and_no_number) {
   io::Scene strong =
       io::parse_scene(k_shaken, "s.toml", {"shake.table.amplitude=900 gal", "run.duration=2 s"});
