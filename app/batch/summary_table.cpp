@@ -291,7 +291,11 @@ std::string damage_line(const ordered_json& b) {
   };
   return b["name"].get<std::string>() + ": " + (hinges > 0 ? counted(hinges, "plastic hinge") : "") +
          (hinges > 0 && fractures > 0 ? ", " : "") +
-         (fractures > 0 ? counted(fractures, "broken section") : "") + "\n";
+         (fractures > 0 ? counted(fractures, "broken section") : "") +
+         (hinges > 0 && !b["peak_stress_Pa"].is_null()
+              ? " (where a section flows its stress is told as if elastic, N/A + M/W, and may be above yield)"
+              : "") +
+         "\n";
 }
 
 // Of a body that may come back yet.

@@ -59,13 +59,17 @@ std::string outcome_table(const ReportPage& page) {
          with_error(body["peak_slide_m"], e["peak_slide_m"], 1e-3, 1)});
     if (stresses) rows.back().push_back(with_error(body["peak_stress_Pa"], e["peak_stress_Pa"], 1e6, 1));
   }
+  const bool flows = stresses && std::ranges::any_of(page.bodies(), [](const ordered_json& b) {
+                       return b["hinges"].get<int>() > 0;
+                     });
   const std::vector<Material>& materials = page.report().scene->setup.model.materials;
   const bool yields = std::ranges::any_of(materials, [](const Material& m) { return m.yield > 0; });
   return page.table(head, rows) +
          page.paragraph(page.say(words::k_table_note, short_shown(100 * k_uplift),
                                  short_shown(k_uplift_angle * k_degrees), page.certain_section()),
                         "note") +
-         (stresses && !yields ? page.paragraph(page.say(words::k_stress_note), "note") : "");
+         (stresses && !yields ? page.paragraph(page.say(words::k_stress_note), "note") : "") +
+         (flows ? page.paragraph(page.say(words::k_flow_note), "note") : "");
 }
 
 /// The bodies that tilt most, at most k_curves, in their order.

@@ -169,6 +169,12 @@ inline constexpr Phrase k_stress_note{
     "one would flow or break.",
     "応力は弾性計算による値である。シーンの材料は降伏しないため、衝突時には実際の材料なら降伏または破壊する値"
     "になることがある。"};
+inline constexpr Phrase k_flow_note{
+    "Plastic hinges formed: of a section that flows the stress is told as if it were elastic, N/A + M/W, and "
+    "may be "
+    "above yield, of a solid bar 1.5 times.",
+    "塑性ヒンジができた。降伏した断面の応力は弾性とみなした N/A + M/W の値で、降伏応力を超えることがある（"
+    "中実断面では 1.5 倍まで）。"};
 inline constexpr Phrase k_tilt_chart{"Figure {0}: tilt of the bodies.{1} Diamond: overturned from here on.",
                                      "図{0}：家具の傾斜角。{1}◇：この時刻以降、転倒。"};
 inline constexpr Phrase k_tilt_chart_standing{"Figure {0}: tilt of the bodies.{1}",

@@ -470,6 +470,18 @@ TEST_F(SummaryTest, plastic_energy_is_told_where_steel_flowed) {
             std::string::npos);
 }
 
+TEST_F(SummaryTest, what_the_stress_of_a_section_that_flows_is_stands_beside_its_hinges) {
+  Json s = summary(scene_, run_, "completed", 0.5);
+  EXPECT_EQ(summary_table(s).find("N/A + M/W"), std::string::npos);
+  s["bodies"][0]["hinges"] = 2;
+  EXPECT_NE(summary_table(s).find("free: 2 plastic hinges (where a section flows its stress is told as if "
+                                  "elastic, N/A + M/W, and may be above yield)\n"),
+            std::string::npos)
+      << summary_table(s);
+  s["bodies"][0]["peak_stress_Pa"] = nullptr;
+  EXPECT_NE(summary_table(s).find("free: 2 plastic hinges\n"), std::string::npos);
+}
+
 TEST_F(SummaryTest, columns_stay_in_line_under_long_names) {
   Json s = summary(scene_, run_, "completed", 0.5);
   s["bodies"][0]["name"] = "a cabinet with a grown-up näme";

@@ -147,6 +147,13 @@ TEST_F(ReportPageTest, what_a_stopper_lifts_is_held_and_what_an_anchor_away_held
   EXPECT_TRUE(is_told(strap, {"anchor.strap.on=false"}));
 }
 
+TEST_F(ReportPageTest, what_the_stress_of_a_section_that_flows_is_is_told_where_hinges_formed) {
+  EXPECT_FALSE(holds(page(), "N/A + M/W"));
+  report_.summary["bodies"][0]["hinges"] = 1;
+  EXPECT_TRUE(holds(page(), "told as if it were elastic, N/A + M/W"));
+  EXPECT_TRUE(holds(page(Language::japanese), "塑性ヒンジ"));
+}
+
 TEST_F(ReportPageTest, a_run_that_was_stopped_says_until_when_all_of_it_is) {
   EXPECT_FALSE(holds(page(), "All on this page is until"));
   report_.summary["status"] = "stopped";
