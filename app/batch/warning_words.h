@@ -36,9 +36,11 @@ inline constexpr Phrase k_few_elements{
     "。elements = {5} なら 2.4 % 以内）"};
 inline constexpr Phrase k_beyond_yield{
     "the stress in body \"{}\", {:.4g} MPa, is beyond yield while the body was elastic, a section bore "
-    "{:.3g} of its strength: no steel does; model = \"frame\" lets it yield",
-    "「{}」は弾性体のまま {:.4g} MPa となり降伏を超えた（断面は耐力の {:.3g} 倍。model = \"frame\" なら降"
-    "伏する）"};
+    "{:.3g} of its strength: a real one would bend there and stay bent, this one springs back; model = "
+    "\"frame\" lets it yield",
+    "「{}」は弾性体のまま {:.4g} MPa となり降伏を超えた（断面は耐力の {:.3g} "
+    "倍。実物ならそこで曲がったままになるが、"
+    "この計算では元に戻る。model = \"frame\" なら降伏する）"};
 inline constexpr Phrase k_beyond_strength{
     "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
     "hinges",
