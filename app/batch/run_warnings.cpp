@@ -108,12 +108,12 @@ void warn_of_stress(const Run& run, Warnings& list) {
   const std::vector<BodyOutcome>& bodies = run.outcome().bodies();
   for (int b = 0; b < model.furniture_total(); ++b) {
     const Body& body = model.bodies[b];
-    double stiffest = 0;
+    const Material* stiffest = nullptr;
     bool yields = false;  // then the greatest stress may be that of what yields
     for (int m = body.first_member; m < body.first_member + body.member_count; ++m) {
       const Material& material = model.materials[model.members[m].material];
       yields = yields || material.yield > 0;
-      stiffest = std::max(stiffest, material.young);
+      if (!stiffest || material.young > stiffest->young) stiffest = &material;
     }
     const auto was = [&](ModelLevel level) {
       const std::vector<LevelChange>& changes = bodies[b].level_changes;
@@ -124,8 +124,9 @@ void warn_of_stress(const Run& run, Warnings& list) {
     if (const double ratio = bodies[b].peak_yield_ratio.value_or(0);
         ratio > k_yielded && was(ModelLevel::elastic) && !by_ends)
       list.push_back(said(ww::k_beyond_yield, body.name, 1e-6 * bodies[b].peak_stress, ratio));
-    if (!yields && bodies[b].peak_stress > k_elastic_strain * stiffest)
-      list.push_back(said(ww::k_beyond_strength, body.name, 1e-6 * bodies[b].peak_stress));
+    if (!yields && stiffest && bodies[b].peak_stress > k_elastic_strain * stiffest->young)
+      list.push_back(said(ww::k_beyond_strength, body.name, 1e-6 * bodies[b].peak_stress, stiffest->name,
+                          1e-6 * k_elastic_strain * stiffest->young));
   }
 }
 

@@ -42,9 +42,12 @@ inline constexpr Phrase k_beyond_yield{
     "倍。実物ならそこで曲がったままになるが、"
     "この計算では元に戻る。model = \"frame\" なら降伏する）"};
 inline constexpr Phrase k_beyond_strength{
-    "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears; with a `yield` it forms "
-    "hinges",
-    "「{}」の応力 {:.4g} MPa は材料の限度を超えている（`yield` を与えるとヒンジができる）"};
+    "the stress in body \"{}\", {:.4g} MPa, is beyond what its material bears: \"{}\" has no `yield`, and "
+    "metals "
+    "and wood bear less than a hundredth of Young's modulus, here {:.4g} MPa; with a `yield` it forms hinges",
+    "「{}」の応力 {:.4g} MPa は材料「{}」の限度を超えている（`yield` "
+    "がなく、金属や木材が耐えるのは弾性係数の1/100、ここでは {:.4g} MPa 未満。`yield` "
+    "を与えるとヒンジができる）"};
 inline constexpr Phrase k_breaks{
     "{} sections broke in load step {}: when one breaks the path leaps to the next equilibrium, and what "
     "lies between is not seen; more run.load_steps, or run.control by a displacement, may stop there",

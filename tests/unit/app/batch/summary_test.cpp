@@ -422,6 +422,8 @@ TEST(Summary, what_no_material_and_no_floor_does_is_told) {
   const std::string landed =
       warnings("near-fault", {"run.duration=5 s", "cabinet.1.base=edges", "run.want=[\"stress\"]"});
   EXPECT_NE(landed.find("the stress in body \\\"free\\\", "), std::string::npos) << landed;
+  EXPECT_NE(landed.find("\\\"steel\\\" has no `yield`"), std::string::npos) << landed;
+  EXPECT_NE(landed.find("here 2050 MPa"), std::string::npos) << landed;  // of 205 GPa
   EXPECT_EQ(warnings("near-fault", {"run.duration=1 s"}), "[]");
   const std::string bare = warnings("paper-a", {"shake.1.amplitude=190", "run.duration=10 ms"});
   EXPECT_NE(bare.find("shake 1 has 1.9e+04 gal, 19.4 times gravity; a number without a unit is in m/s^2"),
