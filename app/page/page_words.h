@@ -96,12 +96,13 @@ inline constexpr Named k_all[] = {
      {"Drag turns, wheel or two fingers zoom, Shift + drag moves. Space plays.",
       "ドラッグで回転、ホイールか2本指で拡大、Shift＋ドラッグで移動。Space で再生。"}},
     {"replay_only",
-     {"This page replays only: a run takes about {0} s here, more than the 3 s that a page may take.",
-      "このページは再生のみ。1回の計算に約{0}秒かかり、ページでの上限3秒を超える。"}},
+     {"This page replays only: a run takes about {0} s in a browser, more than the 3 s that a page may take.",
+      "このページは再生のみ。1回の計算にブラウザーで約{0}秒かかり、ページでの上限3秒を超える。"}},
     {"replay_stress",
-     {"This page replays only: a run takes about {0} s here, more than the 3 s that a page may take. Without "
+     {"This page replays only: a run takes about {0} s in a browser, more than the 3 s that a page may take. "
+      "Without "
       "stresses, with run.want = [\"motion\"], it takes less.",
-      "このページは再生のみ。1回の計算に約{0}秒かかり、ページでの上限3秒を超える。応力なし"
+      "このページは再生のみ。1回の計算にブラウザーで約{0}秒かかり、ページでの上限3秒を超える。応力なし"
       "（run.want = [\"motion\"]）ならより短い。"}},
     {"replay_edits",
      {"This page replays only: parameters were changed while it ran.",
