@@ -30,15 +30,24 @@ std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits,
   return marks;
 }
 
-std::vector<bool> drawn_marks(const std::vector<PlacedMark>& marks, float apart) {
-  std::set<float> taken;
+std::vector<bool> drawn_marks(const std::vector<PlacedMark>& marks, float apart, float far_apart) {
+  std::set<float> breaks, taken;
+  const auto is_free = [](const std::set<float>& places, float x, float room) {
+    const auto next = places.upper_bound(x - room);
+    return next == places.end() || *next >= x + room;
+  };
   for (const PlacedMark& mark : marks)
-    if (!mark.yields) taken.insert(mark.x);
+    if (mark.breaks) breaks.insert(mark.x);
   std::vector<bool> drawn;
   for (const PlacedMark& mark : marks) {
-    const auto next = taken.upper_bound(mark.x - apart);
-    drawn.push_back(!mark.yields || next == taken.end() || *next >= mark.x + apart);
+    drawn.push_back(mark.gives_way == GivesWay::to_none ||
+                    (mark.gives_way == GivesWay::to_breaks && is_free(breaks, mark.x, apart)));
     if (drawn.back()) taken.insert(mark.x);
+  }
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (marks[i].gives_way != GivesWay::to_all || !is_free(taken, marks[i].x, far_apart)) continue;
+    drawn[i] = true;
+    taken.insert(marks[i].x);
   }
   return drawn;
 }

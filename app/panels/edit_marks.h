@@ -19,12 +19,15 @@ struct EditMark {
 std::vector<EditMark> edit_marks(const std::vector<LoggedEdit>& edits,
                                  const std::function<bool(const LoggedEdit&)>& goes_on);
 
+/// What a mark gives way to where there is no room for both.
+enum class GivesWay { to_none, to_breaks, to_all };
 /// A mark along the timeline, px.
 struct PlacedMark {
   float x;
-  bool yields;  ///< its place to those that do not
+  GivesWay gives_way;
+  bool breaks = false;
 };
-/// Whether each is drawn: all that do not yield, and of the others those that are `apart` from all drawn.
-std::vector<bool> drawn_marks(const std::vector<PlacedMark>& marks, float apart);
+/// Whether each is drawn: of those that give way, what is `apart` from breaks, or `far_apart` from all drawn.
+std::vector<bool> drawn_marks(const std::vector<PlacedMark>& marks, float apart, float far_apart);
 
 }  // namespace topple::app

@@ -21,8 +21,8 @@
 namespace topple::app {
 namespace {
 
-constexpr int k_most_told = 6;      // marks at one place, in its tooltip
-constexpr float k_marks_apart = 5;  // halves of a mark's width, from what gives way to others
+constexpr int k_most_told = 6;                             // marks at one place, in its tooltip
+constexpr float k_marks_apart = 2, k_marks_far_apart = 5;  // halves of a mark's width
 
 using namespace window_words;
 
@@ -265,11 +265,6 @@ void add_circle(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
   list.AddCircle(p, size, colour, 12, 1.5f);
 }
 
-void add_cross(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
-  list.AddLine({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour, 1.5f);
-  list.AddLine({p.x - size, p.y + size}, {p.x + size, p.y - size}, colour, 1.5f);
-}
-
 void add_square(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
   list.AddRectFilled({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
 }
@@ -278,20 +273,30 @@ void add_open_square(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
   list.AddRect({p.x - size, p.y - size}, {p.x + size, p.y + size}, colour);
 }
 
+/// A cross with an edge, which is seen on what lies under it.
+void add_cross(ImDrawList& list, ImVec2 p, float size, ImU32 colour) {
+  for (const auto& [width, of] : {std::pair(4.f, theme().halo), std::pair(2.f, colour)}) {
+    list.AddLine({p.x - size, p.y - size}, {p.x + size, p.y + size}, of, width);
+    list.AddLine({p.x - size, p.y + size}, {p.x + size, p.y - size}, of, width);
+  }
+}
+
 struct EventMark {
   Event::Kind kind;
   Draw draw;
   const Phrase& words;  ///< in the key
   std::string (*text)(const Player& player, const io::RecordedEvent& event);
+  GivesWay gives_way = GivesWay::to_none;
+  bool breaks = false;  ///< it lies on top of the others
 };
 constexpr EventMark k_event_marks[] = {
-    {Event::Kind::uplift, add_triangle, k_mark_lifts, body_text<k_lifts>},
-    {Event::Kind::impact, add_bar, k_mark_strikes, body_text<k_strikes>},
+    {Event::Kind::uplift, add_triangle, k_mark_lifts, body_text<k_lifts>, GivesWay::to_breaks},
+    {Event::Kind::impact, add_bar, k_mark_strikes, body_text<k_strikes>, GivesWay::to_breaks},
     {Event::Kind::hinge, add_circle, k_mark_hinge, body_text<k_hinges>},
-    {Event::Kind::fracture, add_cross, k_mark_breaks, body_text<k_breaks>},
-    {Event::Kind::anchor, add_cross, k_mark_breaks, anchor_text},
+    {Event::Kind::fracture, add_cross, k_mark_breaks, body_text<k_breaks>, GivesWay::to_none, true},
+    {Event::Kind::anchor, add_cross, k_mark_breaks, anchor_text, GivesWay::to_none, true},
     {Event::Kind::overturn, add_square, k_mark_passes, body_text<k_passes>},
-    {Event::Kind::model, add_open_square, k_mark_model, model_text}};
+    {Event::Kind::model, add_open_square, k_mark_model, model_text, GivesWay::to_all}};
 
 void add_edit_mark(ImDrawList& list, ImVec2 p, float size) {
   list.AddNgonFilled(p, size, theme().edit, 4);
@@ -340,17 +345,23 @@ void add_marks(ImDrawList& list, const Lane& lane, const Player& player, const T
   const std::vector<std::size_t> coloured = coloured_bodies(tilts);
   const std::vector<io::RecordedEvent> events = player.events();
   std::vector<PlacedMark> places;
-  for (const io::RecordedEvent& event : events)
-    places.push_back({lane.x(event.time), event.event.kind == Event::Kind::model});
-  const std::vector<bool> drawn = drawn_marks(places, k_marks_apart * size);
-  for (std::size_t i = 0; i < events.size(); ++i) {
-    const io::RecordedEvent& event = events[i];
+  for (const io::RecordedEvent& event : events) {
     const EventMark& mark = row_of(k_event_marks, event.event.kind);
-    const ImU32 colour = line_colour(coloured, static_cast<std::size_t>(event.event.body));
-    add(
-        event.time, y, [&] { return mark.text(player, event); }, drawn[i],
-        [&](ImVec2 p) { mark.draw(list, p, size, colour); });
+    places.push_back({lane.x(event.time), mark.gives_way, mark.breaks});
   }
+  const std::vector<bool> drawn = drawn_marks(places, k_marks_apart * size, k_marks_far_apart * size);
+  const auto draw = [&](const io::RecordedEvent& event, ImVec2 p) {
+    row_of(k_event_marks, event.event.kind)
+        .draw(list, p, size, line_colour(coloured, static_cast<std::size_t>(event.event.body)));
+  };
+  for (std::size_t i = 0; i < events.size(); ++i)
+    add(
+        events[i].time, y,
+        [&] { return row_of(k_event_marks, events[i].event.kind).text(player, events[i]); }, drawn[i],
+        [&](ImVec2 p) { draw(events[i], p); });
+  for (std::size_t i = 0; i < events.size(); ++i)
+    if (const float x = places[i].x; places[i].breaks && x >= lane.left && x <= lane.right)
+      draw(events[i], {x, y});
   for (const EditMark& mark :
        edit_marks(player.edits(), [&](const LoggedEdit& edit) { return player.goes_on(edit); }))
     add(

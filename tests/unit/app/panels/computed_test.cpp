@@ -119,10 +119,18 @@ TEST(EditMarks, one_drag_is_one_mark) {
 }
 
 TEST(EditMarks, what_yields_is_drawn_apart_from_all_others) {
-  const std::vector<PlacedMark> marks{{0, true},  {4, true},  {11, true}, {30, false}, {31, false},
-                                      {25, true}, {45, true}, {52, true}, {30, true}};
-  EXPECT_EQ(drawn_marks(marks, 10),
+  using enum GivesWay;
+  const std::vector<PlacedMark> marks{{0, to_all},  {4, to_all},  {11, to_all}, {30, to_none}, {31, to_none},
+                                      {25, to_all}, {45, to_all}, {52, to_all}, {30, to_all}};
+  EXPECT_EQ(drawn_marks(marks, 4, 10),
             (std::vector<bool>{true, false, true, true, true, false, true, false, false}));
+}
+
+TEST(EditMarks, a_break_is_seen_among_marks_that_lie_on_it) {
+  using enum GivesWay;
+  const std::vector<PlacedMark> marks{{28, to_breaks}, {32, to_none}, {30, to_none, true}, {35, to_breaks},
+                                      {36, to_breaks}, {39, to_all},  {30, to_breaks}};
+  EXPECT_EQ(drawn_marks(marks, 4, 10), (std::vector<bool>{false, true, true, true, true, false, false}));
 }
 
 TEST_F(ComputedTest, a_slider_that_is_held_still_in_a_drag_has_one_mark) {
