@@ -10,10 +10,11 @@ namespace {
 
 constexpr render::Float4 k_held_colour = {0.80f, 0.09f, 0.13f, 1};
 constexpr render::Float4 k_idle_colour = {0.93f, 0.45f, 0.42f, 1};  // carries nothing
+constexpr render::Float4 k_lost_colour = {0.56f, 0.56f, 0.56f, 1};  // and will not, or has lost its hold
 constexpr double k_band = 0.04, k_band_thickness = 0.016, k_rod = 0.016, k_plate = 0.042,
                  k_thimble = 0.032;      // m, width and radii
 constexpr double k_plate_depth = 0.012;  // m
-constexpr double k_stump = 0.4;          // of the natural length
+constexpr double k_stump = 0.4;          // of the natural length, of a strap
 constexpr double k_least_stump = 0.08;   // m
 constexpr double k_least_sag = 0.15;     // of the span, and
 constexpr double k_seen_sag = 0.1;       // m: the lesser of the two is seen as slack
@@ -140,23 +141,26 @@ void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift,
                     static_cast<std::uint32_t>(anchor.body), first_profile);
     const bool strap = anchor.type == Anchor::Type::strap && length > 0;
     const Shape shape = strap ? band : rod;
-    const render::Float4& colour = state == io::k_anchor_holds ? k_held_colour : k_idle_colour;
     if (state == io::k_anchor_away) continue;
+    const bool lost = state == io::k_anchor_broken || !strap;
+    const render::Float4& colour = state == io::k_anchor_holds ? k_held_colour
+                                   : lost                      ? k_lost_colour
+                                                               : k_idle_colour;
     painter.mark(plate, colour, from, direction);
     painter.mark(thimble, colour, to, direction);
     if (state == io::k_anchor_broken) {
-      const double stump = std::max(k_stump * length, k_least_stump);
+      const double stump = strap ? std::max(k_stump * length, k_least_stump) : k_least_stump;
       // stumps of a strap hang down, those of a rod stay
       const Vec3 fall = strap ? Vec3(0.6 * direction - 0.8 * Vec3::UnitZ()).normalized() : direction,
                  back = strap ? Vec3(-0.6 * direction - 0.8 * Vec3::UnitZ()).normalized() : Vec3(-direction);
-      painter.draw(shape, k_idle_colour, {from, from + stump * fall});
-      painter.draw(shape, k_idle_colour, {to, to + stump * back});
+      painter.draw(shape, colour, {from, from + stump * fall});
+      painter.draw(shape, colour, {to, to + stump * back});
     } else if (state == io::k_anchor_holds) {
-      painter.draw(shape, k_held_colour, {from, to});
+      painter.draw(shape, colour, {from, to});
     } else if (strap) {
-      painter.draw(shape, k_idle_colour, sagging(from, to, length));
+      painter.draw(shape, colour, sagging(from, to, length));
     } else {
-      painter.draw(shape, k_idle_colour, {from, from + length * direction});
+      painter.draw(shape, colour, {from, from + length * direction});
     }
   }
 }

@@ -13,9 +13,9 @@ Vec3 attached_point(const Model& model, const io::FrameRow& row, const Vec3& shi
 Vec3 far_point(const Model& model, const io::FrameRow& row, const Vec3& shift, std::size_t anchor);
 
 /// Straps as bands, poles and brackets as rods, in a colour of their own, with a plate on the wall and a
-/// thimble on the body. One that holds is straight; a slack strap sags, a slack pole ends short of the body;
-/// one that broke is two stumps; one that is away leaves its plate. Tube::member is the number of members
-/// plus that of the anchor.
+/// thimble on the body. One that holds is straight; a slack strap sags, a slack pole ends short of the body
+/// and is grey; one that broke is two grey stumps; one that is away is not drawn. Tube::member is the number
+/// of members plus that of the anchor.
 void add_anchors(const Model& model, const io::FrameRow& row, const Vec3& shift, render::SceneFrame& out);
 
 }  // namespace topple::app

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/picture/anchor_picture.h"
 #include "app/picture/annotations.h"
 #include "app/picture/solid_bodies.h"
 #include "app/picture/words.h"
@@ -195,6 +196,36 @@ TEST(AnchorPicture, shows_whether_it_holds_sags_broke_or_is_away) {
   Model called_by_type = model;
   called_by_type.anchors[1].name = "strap";
   EXPECT_EQ(anchor_in_words(called_by_type, row, 1), "strap: taken away");
+}
+
+// A pole that its piece fell away from, and what broke, hold nothing any more: they are grey, and stubs.
+TEST(AnchorPicture, what_holds_nothing_any_more_is_grey) {
+  io::Scene scene = io::parse_scene(k_shaken + k_straps, "s.toml");
+  scene.setup.model.anchors[1].type = Anchor::Type::pole;
+  const topple::Run run(scene.setup);
+  io::FrameRow row = io::frame_row(run);
+  const auto drawn = [&](float state) {
+    row.anchor[1].state = state;
+    render::SceneFrame frame;
+    add_anchors(scene.setup.model, row, Vec3::Zero(), frame);
+    std::erase_if(frame.tubes, [&](const render::Tube& tube) {
+      return tube.member != scene.setup.model.members.size() + 1;
+    });
+    return frame;
+  };
+  const auto is_grey = [](const render::Tube& tube) {
+    return tube.colour[0] == tube.colour[1] && tube.colour[1] == tube.colour[2];
+  };
+  EXPECT_TRUE(std::ranges::none_of(drawn(io::k_anchor_holds).tubes, is_grey));
+  EXPECT_TRUE(std::ranges::all_of(drawn(io::k_anchor_slack).tubes, is_grey));
+  const render::SceneFrame broken = drawn(io::k_anchor_broken);
+  ASSERT_EQ(broken.tubes.size(), 4u);
+  EXPECT_TRUE(std::ranges::all_of(broken.tubes, is_grey));
+  for (const std::size_t stub : {2u, 3u}) {
+    const auto& a = broken.stations[broken.tubes[stub].first_station].position;
+    const auto& b = broken.stations[broken.tubes[stub].first_station + 1].position;
+    EXPECT_LT(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 0.1);
+  }
 }
 
 TEST_F(BridgeTest, pictures_hold_finite_numbers_within_their_bounds) {
