@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "app/chart/lane.h"
 #include "app/panels/computed.h"
@@ -349,6 +350,15 @@ void draw_anchor(const Parameter& of) {
                 also);
 }
 
+/// What is fixed before the run, for good.
+void write_stoppers(const Setup& setup) {
+  if (setup.model.anchors.empty() && !setup.wedges.empty())
+    ImGui::TextDisabled("%s", say(furnish_words::k_fixings).c_str());
+  for (const Wedge& wedge : setup.wedges)
+    write_below(say(wedge.in_place() ? k_stopper_line : k_stopper_away_line, wedge.name,
+                    setup.model.bodies[static_cast<std::size_t>(wedge.body)].name));
+}
+
 /// What sets a parameter; one without a row has a slider.
 struct Control {
   Edit::Key key;
@@ -410,12 +420,13 @@ bool draw_parameters(Player& player, std::string& refused) {
   const Setup& setup = player.scene().setup;
   ImGui::BeginDisabled(!player.can_edit());
   std::optional<std::pair<Edit::Of, int>> heading;
-  bool open = true, precision = false;
+  bool open = true, precision = false, stoppers_due = true;
   for (const auto& [key, index] : editable(setup.model, parameters)) {
     if (is_static(setup) && traits(key).dynamic) continue;
     const Edit::Of of = traits(key).of;
     if (of == Edit::Of::contact && !can_touch(setup.model)) continue;
     const std::pair below{of, of == Edit::Of::shake ? index : 0};
+    if (of == Edit::Of::run && std::exchange(stoppers_due, false)) write_stoppers(setup);
     if (heading != below) open = draw_heading(of, index, parameters, setup.model);
     heading = below;
     if (open) draw_row({player, key, index, refused});

@@ -235,6 +235,12 @@ inline constexpr Phrase k_floor_shake{"Floor, shake {0}", "床（加振 {0}）"}
 inline constexpr Phrase k_contact{"Contact", "接触"};
 inline constexpr Phrase k_bodies{"Bodies", "家具"};
 inline constexpr Phrase k_anchors_heading{"Fixings", "固定具"};
+inline constexpr Phrase k_stopper_line{
+    "{0}: a stopper, which leans {1} before the run and cannot be switched in it",
+    "{0}：{1} のストッパー。計算前に家具を傾けるため、計算中は切り替え不可"};
+inline constexpr Phrase k_stopper_away_line{
+    "{0}: a stopper of {1}, not in place; it cannot be switched in the run",
+    "{0}：{1} のストッパー（取り外し）。計算中は切り替え不可"};
 inline constexpr Phrase k_integration{"Integration", "時間積分"};
 inline constexpr Phrase k_on{"on", "加振する"};
 inline constexpr Phrase k_on_about{"shakes the floor; switched over a quarter of a period",

@@ -441,6 +441,31 @@ TEST_P(WindowText, is_read_in_tooltips_of_the_chooser) {
 
 constexpr Language k_ja = Language::japanese, k_en = Language::english;
 
+TEST_P(WindowText, lists_a_stopper_which_no_box_switches) {
+  start(std::make_shared<const io::Scene>(io::parse_scene(R"(topple = 1
+floor = {}
+run = { duration = 0.02, want = ["motion"] }
+wall = [{ name = "back", at = [0, 0], normal = [1, 0, 0] }]
+furniture = [{ kind = "bookshelf", against = "back", gap = "10 mm" }]
+fixing = [{ name = "stop", kind = "stopper", body = "bookshelf", to = "floor" }]
+)",
+                                                          "s.toml")));
+  shown.clear();
+  listening = true;
+  const auto tells = [](const Shown& text) { return text.words.starts_with("stop"); };
+  const auto told_at = [&](float scroll) {
+    for (ImGuiWindow* const window : GImGui->Windows)
+      if (std::string(window->Name).starts_with("side/content")) ImGui::SetScrollY(window, scroll);
+    for (int i = 0; i < 3; ++i) frame();
+    return std::ranges::find_if(shown, tells);
+  };
+  auto told = told_at(0);
+  for (float scroll = 0; told == shown.end() && scroll < 2000; scroll += 100) told = told_at(scroll);
+  listening = false;
+  ASSERT_NE(told, shown.end());
+  EXPECT_EQ(told->colour, ImGui::GetColorU32(ImGuiCol_TextDisabled));
+}
+
 /// Letters four steps larger than usual.
 class LargeLetters : public WindowText {};
 TEST_P(LargeLetters, cut_no_line_in_the_scene_that_has_room_for_it) {
