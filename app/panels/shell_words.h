@@ -117,8 +117,8 @@ inline constexpr Phrase k_no_such_speed{"A video runs at {0:.4g} to {1:g} times 
 inline constexpr Phrase k_video_about{"The view as it is seen now, over a range of time.",
                                       "現在の視点の動画。時間の範囲を選べます。"};
 inline constexpr Phrase k_tables_about{
-    "Bodies, nodes, elements, floor and energy over time, in a new folder.",
-    "物体・節点・要素・床・エネルギーの時刻歴を新しいフォルダに書きます。"};
+    "Bodies, nodes, elements, fixings, contacts, floor and energy over time, in a new folder.",
+    "物体・節点・要素・固定具・接触・床・エネルギーの時刻歴を新しいフォルダに書きます。"};
 inline constexpr Phrase k_export_without_before{
     "Without the pale run of the room as it was before: that is another recording.",
     "淡色で示した変更前の部屋の計算は別の記録なので含まれません。"};
