@@ -185,8 +185,7 @@ void Viewer::lay_out() {
   }
   const float line = fonts_.small->FontSize;
   const float side = std::min(k_side_panel * scale_, k_most_side * size.x);
-  const float status = static_cast<float>(status_lines_.size()) * ImGui::GetTextLineHeightWithSpacing() +
-                       2 * ImGui::GetStyle().WindowPadding.y;
+  const float status = ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y;
   const float bar = transport_height_ > 0 ? transport_height_ : 38 * scale_;
   const float timeline =
       std::min({182 * scale_, 0.3f * size.y, 0.45f * std::max(size.y - status - bar, 0.f)});
@@ -217,14 +216,11 @@ void Viewer::report_frame_time(double ms) {
 
 void Viewer::build(const std::function<void()>& over, bool covered) {
   const Box before = scene_;
-  const float status_before = status_.height;
   write_status();
   lay_out();
   if (before.width != scene_.width || before.height != scene_.height) {
     camera_changed_ = true;
-    const bool by_status_alone =
-        before.width == scene_.width && before.height + status_before == scene_.height + status_.height;
-    fitted_ = fitted_ && (moved_ || by_status_alone);
+    fitted_ = fitted_ && moved_;
   }
   if (!covered) handle_characters();
   set_keyboard_navigation(!covered);

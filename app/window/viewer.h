@@ -215,8 +215,8 @@ class Viewer {
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
-  float transport_height_ = 0;  // as last drawn
-  std::vector<std::string> status_lines_;
+  float transport_height_ = 0;              // as last drawn
+  std::string status_line_, status_words_;  // as far as there is room, and whole
   bool to_next_panel_ = false;
   ShellRequest asked_ = ShellRequest::none;
   bool keys_shown_ = false, ghost_shown_ = true, panels_hidden_ = false, keeps_in_picture_ = false;

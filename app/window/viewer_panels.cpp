@@ -25,7 +25,7 @@ namespace {
 
 using namespace window_words;
 
-constexpr int k_most_status_lines = 3;
+constexpr float k_status_tip = 50;       // ems, the width of the whole status
 constexpr float k_most_legend = 0.3f;    // of the width
 constexpr float k_room_for_title = 16;   // lines
 constexpr float k_narrow_words = 0.3f;   // of the width: bodies stand beside words no wider
@@ -245,8 +245,8 @@ void Viewer::write_status() {
   const auto width = [&](const std::string& text) { return render::text_width(*fonts_.small, text) + gap; };
   float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
   if (player_.can_halve_step()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
-  status_lines_ = render::wrapped(*fonts_.small, words, room, k_most_status_lines);
-  if (status_lines_.empty()) status_lines_.emplace_back();
+  status_line_ = render::shortened(*fonts_.small, words, room);
+  status_words_ = words;
 }
 
 std::string Viewer::pace() const {
@@ -259,9 +259,14 @@ void Viewer::draw_status() {
     if (ImGui::SmallButton((say(k_halve) + "##halve").c_str())) player_.halve_step_and_retry();
     ImGui::SameLine();
   }
-  ImGui::BeginGroup();
-  for (const std::string& line : status_lines_) ImGui::TextUnformatted(line.c_str());
-  ImGui::EndGroup();
+  ImGui::TextUnformatted(status_line_.c_str());
+  if (status_line_ != status_words_ && ImGui::IsItemHovered()) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(k_status_tip * ImGui::GetFontSize());
+    ImGui::TextUnformatted(status_words_.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+  }
   const std::string right = pace();
   ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - ImGui::CalcTextSize(right.c_str()).x);
   ImGui::TextDisabled("%s", right.c_str());

@@ -249,7 +249,7 @@ TEST_F(ViewerTest, space_plays_and_pauses) {
   EXPECT_EQ(player_->time(), time);
 }
 
-TEST_F(ViewerTest, a_status_of_two_lines_leaves_the_camera_where_it_is) {
+TEST_F(ViewerTest, a_long_status_leaves_everything_where_it_is_and_is_whole_in_its_tooltip) {
   start();
   for (int i = 0; i < 5; ++i) frame();
   const float height = viewer_->scene_box().height;
@@ -258,7 +258,15 @@ TEST_F(ViewerTest, a_status_of_two_lines_leaves_the_camera_where_it_is) {
   for (int i = 0; i < 60; ++i) words += "warning ";
   viewer_->show_message(words);
   for (int i = 0; i < 5; ++i) frame();
-  EXPECT_LT(viewer_->scene_box().height, height);
+  EXPECT_EQ(viewer_->scene_box().height, height);
+  const ImGuiWindow* const status = ImGui::FindWindowByName("status");
+  ASSERT_NE(status, nullptr);
+  EXPECT_LE(status->ContentSize.x, status->Size.x);
+  ImGui::GetIO().MousePos = {status->Pos.x + 60, status->Pos.y + status->Size.y / 2};
+  for (int i = 0; i < 3; ++i) frame();
+  const ImGuiWindow* const tip = ImGui::FindWindowByName("##Tooltip_00");
+  ASSERT_TRUE(tip && tip->Active);
+  EXPECT_GT(tip->Size.y, 2 * ImGui::GetTextLineHeight());
   EXPECT_EQ(viewer_->orbit().distance, before.distance);
   EXPECT_EQ(viewer_->orbit().target, before.target);
 }
