@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <filesystem>
+#include <string>
 #include <utility>
 
 #include "app/chart/lane.h"
 #include "app/panels/teaching_words.h"
 #include "app/support/terms.h"
+#include "render/scene/text_layout.h"
 
 namespace topple::app {
 namespace {
@@ -59,10 +60,13 @@ void draw_demos(const Player& player, TeachingState& state) {
         state.wanted = k;
   }
   if (player.scene().name != k_demo_scene) text_wrapped(say(k_demo_opens, k_demo_scene));
-  const std::string& before = state.came_from;
-  state.back =
-      !before.empty() &&
-      ImGui::Button(say(k_back_to, std::filesystem::path(before).filename().string()).c_str(), {-1, 0});
+  state.back = false;
+  if (state.came_from.empty()) return;
+  const std::string whole = say(k_back_to, state.scene_before);
+  const float room = ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().FramePadding.x;
+  const std::string shown = render::shortened(*ImGui::GetFont(), whole, room);
+  state.back = ImGui::Button((shown + "##back").c_str(), {-1, 0});
+  if (shown != whole && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", whole.c_str());
 }
 
 void draw_accuracy(const Player& player, TeachingState& state) {

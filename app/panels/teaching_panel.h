@@ -25,6 +25,7 @@ struct TeachingState {
   bool begins = false;                ///< the guide, since the last frame
   std::optional<std::size_t> wanted;  ///< index into demos(): asked for in the last frame
   std::string came_from;              ///< what a demo's scene was opened instead of; empty: nothing
+  std::string scene_before;           ///< its name
   bool back = false;                  ///< to that: asked for in the last frame
   std::unique_ptr<Accuracy> accuracy;
   bool in_sight = false;  ///< its result has been scrolled to

@@ -198,10 +198,11 @@ void Shell::start_demo() {
   const bool there = session_->scene().name == k_demo_scene && !player.replay();
   if (there) player.to_end();
   if (there && can_shake_as_sine(player)) {
-    session_->viewer().guide(demo_->which, before_demo_);
+    session_->viewer().guide(demo_->which, before_demo_, scene_before_demo_);
     demo_.reset();
   } else if (!std::exchange(demo_->opened, true)) {
     // a furnished room is in no file that opens it anew, but its run was recorded
+    scene_before_demo_ = session_->scene().name;
     before_demo_ = shaken_ == &session_->scene() ? session_->recording() : session_->source();
     open(k_demo_scene);
   } else if (!there) {
@@ -330,6 +331,7 @@ void Shell::build_over() {
     const std::string saved = save_.draw(session_->scene(), session_->player().parameters(), window, fonts());
     if (!saved.empty()) {
       remember_recent(save_.path);
+      session_->viewer().saved_as(fs::path(save_.path).stem().string());
       session_->viewer().show_message(saved);
     }
   } else if (export_.is_open()) {

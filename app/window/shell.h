@@ -128,6 +128,7 @@ class Shell {
   };
   std::optional<WantedDemo> demo_;  ///< begins when its scene is there
   std::string before_demo_;         ///< what was open when a demo opened its scene; empty: nothing
+  std::string scene_before_demo_;   ///< the name of its scene
   int frames_due_ = 0;
   std::array<bool, 5> over_{};  // what lay over the window at the last update: a dialog draws itself anew
   bool wants_to_close_ = false, full_screen_ = false;

@@ -456,9 +456,10 @@ void Viewer::pick(const std::optional<render::Pick>& found) {
   }
 }
 
-void Viewer::guide(std::size_t demo, const std::string& came_from) {
+void Viewer::guide(std::size_t demo, const std::string& came_from, const std::string& scene) {
   tab_ = Tab::teach;
   teaching_.came_from = came_from;
+  teaching_.scene_before = scene;
   teaching_.guide.emplace(demos()[demo], player_);
   teaching_.begins = true;
 }

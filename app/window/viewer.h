@@ -69,8 +69,9 @@ class Viewer {
     return follows_ ? std::optional(follows_->body) : std::nullopt;
   }
 
-  /// Begins a guided demo; the floor must be one that can_shake_as_sine. `came_from`: as of TeachingState.
-  void guide(std::size_t demo, const std::string& came_from = {});
+  /// Begins a guided demo; the floor must be one that can_shake_as_sine. `came_from`, `scene`: as of
+  /// TeachingState.
+  void guide(std::size_t demo, const std::string& came_from = {}, const std::string& scene = {});
 
   /// Takes in what is new. True when there is something to draw that was not drawn before.
   bool update(double wall_s);
@@ -132,6 +133,13 @@ class Viewer {
   /// In the status line until the next click.
   void show_message(const std::string& words) { message_ = words; }
   const std::string& message() const { return message_; }
+  /// Over the scene, until another takes its place; empty: none.
+  void show_note(const std::string& words) { note_ = words; }
+  const std::string& note() const { return note_; }
+  /// The values of now are those of the scene that was saved under this name.
+  void saved_as(const std::string& name) { saved_ = {name, player_.parameters()}; }
+  /// Of the scene as it is shown, over it.
+  std::string title() const;
   /// At the right end of the status line; empty: nothing is at work beside the window.
   void show_work(const std::string& words) { work_ = words; }
   /// How long a frame took, ms, for the status line.
@@ -223,6 +231,8 @@ class Viewer {
   std::string refused_;
   std::string work_;
   std::string message_;  // what was written, or why it was not
+  std::string note_;
+  std::pair<std::string, Parameters> saved_;  // the name of the scene that was saved last; empty: none
   double frame_ms_ = 0;
 };
 

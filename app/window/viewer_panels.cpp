@@ -56,6 +56,15 @@ SceneWords lines_of(const std::vector<std::pair<ImFont*, std::string>>& said, fl
 
 }  // namespace
 
+std::string Viewer::title() const {
+  const std::string title =
+      title_in_words(player_.scene(), player_.parameters_so_far(), player_.changed_so_far());
+  const auto& [name, values] = saved_;
+  return name.empty() || name == player_.scene().name || values != player_.parameters_so_far()
+             ? title
+             : say(k_title_saved, title, name);
+}
+
 void Viewer::draw_words(const io::FrameRow& row) {
   if (!settings_.words) {
     words_top_ = words_bottom_ = words_left_ = words_right_ = 0;
@@ -74,8 +83,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   std::vector<std::pair<ImFont*, std::string>> said;
   const bool low = scene_.height < k_room_for_title * fonts_.small->FontSize;
   const auto add = [&](ImFont* font, const std::string& text) { said.emplace_back(font, text); };
-  if (!low)
-    add(fonts_.text, title_in_words(player_.scene(), player_.parameters_so_far(), player_.changed_so_far()));
+  if (!low) add(fonts_.text, title());
   add(fonts_.small, instant_in_words(player_.scene().setup, row) + "   " +
                         shake_in_words(player_.parameters_so_far(), row.time));
   const Model& model = player_.scene().setup.model;

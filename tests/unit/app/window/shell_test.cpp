@@ -189,7 +189,7 @@ TEST_F(ShellTest, a_guided_demo_opens_its_own_scene_and_what_was_open_stays_reco
   ASSERT_TRUE(until([&] { return io::Recording(recording).status() == "stopped"; }));
   const auto stands_still = [&] { return shell_->session()->viewer().teaching().guide->step() == 0; };
   ASSERT_TRUE(until(stands_still));
-  click("Back to rocking.toml", "side/content");
+  click("Back to rocking##back", "side/content");
   ASSERT_TRUE(until([&] { return ready() && shell_->title() == "topple: rocking"; }));
   EXPECT_FALSE(shell_->session()->viewer().teaching().guide.has_value());
 }
@@ -315,6 +315,12 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(recent_files().front(), path);
   EXPECT_EQ(saved.title, "A rocking cabinet for tests");
+  run_to(0.15);
+  const Viewer& viewer = shell_->session()->viewer();
+  EXPECT_EQ(viewer.title(), "A rocking cabinet for tests (changed), saved as kept");
+  player().to_start();
+  EXPECT_EQ(viewer.title(), "A rocking cabinet for tests");
+  player().to_end();
   const auto proposal = [&] {
     shell_->save_dialog().open(shell_->session()->scene());
     frame();
