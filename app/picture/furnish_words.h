@@ -37,8 +37,9 @@ inline constexpr Phrase k_furnish_about{"Place, move and fix furniture in this r
                                         "この部屋の家具を配置・移動・固定する（F2）"};
 inline constexpr Phrase k_key_furnish{"furnish the room", "部屋の家具を配置"};
 inline constexpr Phrase k_shake_it{"Shake it", "揺らす"};
-inline constexpr Phrase k_shake_it_about{"A run of this room under the same shake (Space)",
-                                         "同じ加振でこの部屋を計算する（Space）"};
+inline constexpr Phrase k_shake_it_about{
+    "A run of this room from the beginning, under the shake as it is set now (Space)",
+    "現在の加振の設定で、この部屋を最初から計算する（Space）"};
 inline constexpr Phrase k_new_room{"New room", "新しい部屋"};
 inline constexpr Phrase k_new_room_about{"A floor, two walls and a bookshelf to begin with",
                                          "床・2面の壁・本棚から始める"};
@@ -80,6 +81,9 @@ inline constexpr Phrase k_furnishing{"furnishing", "配置中"};
 
 inline constexpr Phrase k_ghost_before{"pale: the run before the room was changed",
                                        "淡色：変更前の部屋の計算"};
+inline constexpr Phrase k_ghost_before_edited{
+    "pale: the run before the room was changed; on its way it was given other values: {0}",
+    "淡色：変更前の部屋の計算（途中で値を変更：{0}）"};
 
 // the panel
 inline constexpr Phrase k_tab_kinds{"Furniture", "家具"};

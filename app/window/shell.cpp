@@ -135,7 +135,7 @@ bool Shell::finish_opening() {
     if (shaking_ && session_ && before_ == &session_->scene() && !room_->is_another()) {
       const bool changed = session_->scene().text != room_->room().text();
       if (changed && session_->player().way().size() > 1)
-        before = EarlierRun(session_->scene_ptr(), session_->player().way());
+        before = EarlierRun(session_->scene_ptr(), session_->player());
       else
         before = session_->viewer().take_earlier();
     }

@@ -9,9 +9,12 @@
 #include <utility>
 
 #include "app/chart/theme.h"
+#include "app/panels/edit_marks.h"
 #include "app/panels/shell_words.h"
+#include "app/picture/furnish_words.h"
 #include "app/picture/row.h"
 #include "app/support/terms.h"
+#include "solver/io/edit/edit_text.h"
 
 namespace topple::app {
 namespace {
@@ -48,9 +51,36 @@ bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::
 
 }  // namespace
 
-EarlierRun::EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPtr> way)
+namespace {
+
+/// What was changed after the start, as "shake.1.amplitude (3.60 s)".
+std::string changes_on_the_way(const Player& player) {
+  constexpr std::size_t k_most = 3;
+  std::string words;
+  std::size_t told = 0;
+  for (const EditMark& mark :
+       edit_marks(player.edits(), [&](const LoggedEdit& edit) { return player.goes_on(edit); })) {
+    if (mark.last.step == 0) continue;
+    if (++told > k_most) return words + ", …";
+    words += (words.empty() ? "" : ", ") +
+             fmt::format("{} ({:.2f} s)", io::scene_key(mark.last.edit, player.scene().setup.model),
+                         mark.last.time);
+  }
+  return words;
+}
+
+std::string earlier_in_words(const Player& player) {
+  const std::string changes = changes_on_the_way(player);
+  return changes.empty() ? say(furnish_words::k_ghost_before)
+                         : say(furnish_words::k_ghost_before_edited, changes);
+}
+
+}  // namespace
+
+EarlierRun::EarlierRun(std::shared_ptr<const io::Scene> scene, const Player& player)
     : scene_(std::move(scene)),
-      way_(std::move(way)),
+      way_(player.way()),
+      words_(earlier_in_words(player)),
       extent_(std::make_unique<const RunExtent>()),
       bridge_(std::make_unique<const Bridge>(*scene_, *extent_)) {}
 

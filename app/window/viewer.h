@@ -29,8 +29,10 @@ namespace topple::app {
 /// A run that was left for one of another model, beside which it is drawn.
 class EarlierRun {
  public:
-  /// `way`: its rows, in the order of time.
-  EarlierRun(std::shared_ptr<const io::Scene> scene, std::vector<RowPtr> way);
+  /// As the player shows it.
+  EarlierRun(std::shared_ptr<const io::Scene> scene, const Player& player);
+  /// "pale: the run before the room was changed", and what was changed while it ran.
+  const std::string& in_words() const { return words_; }
   /// Its bodies at the time of `beside`, as ghosts on the floor of that; as long as it lasted.
   void add(const io::FrameRow& beside, const PictureSettings& settings, render::SceneFrame& out) const;
   /// Of the pieces that `model` has by the same names.
@@ -39,6 +41,7 @@ class EarlierRun {
  private:
   std::shared_ptr<const io::Scene> scene_;
   std::vector<RowPtr> way_;
+  std::string words_;
   std::unique_ptr<const RunExtent> extent_;
   std::unique_ptr<const Bridge> bridge_;
 };

@@ -96,7 +96,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty() && traits(settings_.bodies).beams)
     add(fonts_.small, say(k_all_rigid));
   if (shows_earlier())
-    add(fonts_.small, say(furnish_words::k_ghost_before));
+    add(fonts_.small, earlier_->in_words());
   else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_ && !frame_.ghost_tubes.empty())
     add(fonts_.small, say(k_ghost_is, *ghost));
   const bool flat_legend = !drawn && !frame_.legend.quantity.empty();
