@@ -25,6 +25,7 @@ namespace {
 
 using namespace window_words;
 
+constexpr int k_most_status_lines = 2;
 constexpr float k_status_tip = 50;       // ems, the width of the whole status
 constexpr float k_most_legend = 0.3f;    // of the width
 constexpr float k_room_for_title = 16;   // lines
@@ -253,7 +254,9 @@ void Viewer::write_status() {
   const auto width = [&](const std::string& text) { return render::text_width(*fonts_.small, text) + gap; };
   float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
   if (player_.can_halve_step()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
-  status_line_ = render::shortened(*fonts_.small, words, room);
+  status_line_.clear();
+  for (const std::string& line : render::wrapped(*fonts_.small, words, room, k_most_status_lines))
+    status_line_ += (status_line_.empty() ? "" : "\n") + line;
   status_words_ = words;
 }
 
@@ -268,7 +271,7 @@ void Viewer::draw_status() {
     ImGui::SameLine();
   }
   ImGui::TextUnformatted(status_line_.c_str());
-  if (status_line_ != status_words_ && ImGui::IsItemHovered()) {
+  if (status_line_.ends_with("…") && ImGui::IsItemHovered()) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(k_status_tip * ImGui::GetFontSize());
     ImGui::TextUnformatted(status_words_.c_str());
