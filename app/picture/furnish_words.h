@@ -44,8 +44,12 @@ inline constexpr Phrase k_new_room{"New room", "新しい部屋"};
 inline constexpr Phrase k_new_room_about{"A floor, two walls and a bookshelf to begin with",
                                          "床・2面の壁・本棚から始める"};
 inline constexpr Phrase k_back{"Back", "戻る"};
-inline constexpr Phrase k_back_about{"To the run as it was; the room stays as it is here (F2)",
-                                     "元の計算に戻る。ここでの配置は残る（F2）"};
+inline constexpr Phrase k_back_about{
+    "To the run as it was, of the room before the changes; the room stays as it is here (F2)",
+    "変更前の部屋の計算に戻る。ここでの配置は残る（F2）"};
+inline constexpr Phrase k_run_before_changes{
+    "the run of the room before it was changed; F2, then Space, runs the changed room",
+    "変更前の部屋の計算です。変更後の部屋は F2、Space で計算します"};
 inline constexpr Phrase k_undo_furnish{"Takes the last change back (Ctrl+Z)",
                                        "直前の変更を取り消す（Ctrl+Z）"};
 inline constexpr Phrase k_redo_furnish{"Makes it again (Ctrl+Y)", "取り消した変更をやり直す（Ctrl+Y）"};

@@ -80,6 +80,10 @@ void Shell::show(LiveSource source, const std::string& path) {
     room_.reset();
   }
   before_ = shaken_ = shaking_ ? source.scene.get() : nullptr;
+  if (shaking_) {
+    ran_ = source.scene->text;
+    sliders_ = source.scene->setup.parameters;
+  }
   session_ =
       std::make_unique<Session>(std::move(source), path, stage_, scale_, settings, appearance_, keep_, wake_);
   session_->player().set_loop(loop);

@@ -42,7 +42,8 @@ class Shell {
   /// scene that is open.
   void drop(const std::vector<std::string>& paths);
   void choose_scene() { chooser_.open(); }
-  /// Furnishes the room of what is open, whose run pauses; or goes back to that run.
+  /// Furnishes the room of what is open, whose run pauses, or one that was furnished since; or goes back to
+  /// that run.
   void furnish();
   /// Furnishes a new room.
   void furnish_new_room();
@@ -89,6 +90,7 @@ class Shell {
   float interface_scale() const;
   std::string text_of_session() const;
   void press_in_room(const render::KeyPress& press);
+  void take_sliders();
   void keep_room();
   void draw_opening(const Box& window);
   void answer_message();
@@ -117,6 +119,8 @@ class Shell {
   bool shaking_ = false;               ///< what is being opened is room_
   const io::Scene* shaken_ = nullptr;  ///< the session's that came of room_; null: it did not
   const io::Scene* before_ = nullptr;  ///< the session's of which room_ is a changed one; null: it is none
+  std::string ran_;                    ///< the text of room_ as before_ runs it
+  Parameters sliders_;                 ///< of before_ that room_ has taken
   std::optional<io::Scene> to_save_;   ///< room_ as it is saved
   std::string kept_room_;              ///< its text when it was written last
   std::vector<std::future<LiveStatus>> closing_;

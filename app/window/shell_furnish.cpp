@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "app/furnish/room_edits.h"
 #include "app/panels/shell_words.h"
@@ -17,6 +19,30 @@ namespace fw = furnish_words;
 namespace fs = std::filesystem;
 
 constexpr const char* k_room_file = "my-room.toml";
+
+/// The place of a name in one list, in another; nothing: it has none there.
+template <class Named>
+std::optional<int> same_name(const std::vector<Named>& from, int index, const std::vector<Named>& to) {
+  const auto same = std::ranges::find(to, from[static_cast<std::size_t>(index)].name, &Named::name);
+  return same == to.end() ? std::nullopt : std::optional(static_cast<int>(same - to.begin()));
+}
+
+/// `room` with edits of a run of `ran`, as far as it has what they are of.
+std::string with_edits(const io::Scene& room, const Model& ran, const std::vector<Edit>& edits) {
+  const Model& model = room.setup.model;
+  Parameters now = room.setup.parameters;
+  for (Edit edit : edits) {
+    std::optional<int> index = edit.index;
+    const Edit::Of of = traits(edit.key).of;
+    if (of == Edit::Of::node) continue;
+    if (of == Edit::Of::body) index = same_name(ran.bodies, edit.index, model.bodies);
+    if (of == Edit::Of::anchor) index = same_name(ran.anchors, edit.index, model.anchors);
+    if (!index) continue;
+    edit.index = *index;
+    apply(edit, model, 0, now);
+  }
+  return io::edited_scene(room, now).text;
+}
 
 }  // namespace
 
@@ -33,31 +59,48 @@ void Shell::furnish() {
   if (!session_) return chooser_.open();
   if (furnishing_) {
     furnishing_ = false;
+    const bool changed = before_ && room_->room().text() != ran_;
+    session_->viewer().show_note(changed ? say(fw::k_run_before_changes) : "");
     return session_->viewer().redraw();
   }
-  if (session_->scene().setup.run.analysis != Analysis::dynamic) {
+  if (!room_ && session_->scene().setup.run.analysis != Analysis::dynamic) {
     session_->viewer().show_message(say(fw::k_only_shaken));
     return;
   }
   session_->player().pause();
   try {
-    const std::string text = text_of_session();
-    if (room_ && shaken_ == &session_->scene()) {
-      room_->change([text](const io::Scene&) { return text; });
+    if (room_) {
+      if (before_) take_sliders();
       room_->redraw();
     } else {
       io::Scene scene = session_->scene();
-      scene.text = text;
+      scene.text = text_of_session();
       const std::string& source = session_->source();
       room_ = std::make_unique<FurnishView>(stage_, scene,
                                             source.ends_with(".toml") ? source : scene.name + ".toml",
                                             session_->viewer().orbit());
+      before_ = &session_->scene();
+      ran_ = room_->room().text();
+      sliders_ = session_->player().parameters();
     }
-    before_ = &session_->scene();
     furnishing_ = true;
   } catch (const io::InputError& error) {
     session_->viewer().show_message(say(window_words::k_refused, error.what()));
   }
+}
+
+/// Sliders that were moved since the room was left belong to it.
+void Shell::take_sliders() {
+  const Player& player = session_->player();
+  const std::vector<Edit> edits = player.edits_from(sliders_);
+  if (edits.empty()) return;
+  const bool as_it_ran = room_->room().text() == ran_;
+  const auto with_sliders = [&](const io::Scene&) {
+    return with_edits(room_->room().loader()(), session_->scene().setup.model, edits);
+  };
+  if (!room_->change(with_sliders)) return;
+  sliders_ = player.parameters();
+  if (as_it_ran) ran_ = room_->room().text();
 }
 
 /// What was furnished and not saved is not lost: it stands among the recent files.

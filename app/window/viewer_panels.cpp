@@ -96,6 +96,7 @@ void Viewer::draw_words(const io::FrameRow& row) {
   for (const std::string& words : anchors_in_words(model, row)) add(fonts_.small, words);
   if (frame_.legend.quantity.empty() && !frame_.tubes.empty() && traits(settings_.bodies).beams)
     add(fonts_.small, say(k_all_rigid));
+  if (!note_.empty()) add(fonts_.small, note_);
   if (shows_earlier())
     add(fonts_.small, earlier_->in_words());
   else if (const auto ghost = player_.ghost_branch(); ghost && ghost_shown_ && !frame_.ghost_tubes.empty())

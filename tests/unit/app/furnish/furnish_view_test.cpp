@@ -234,6 +234,75 @@ TEST_F(FurnishTest, a_room_is_shaken_and_the_run_before_it_stays_as_a_ghost) {
   EXPECT_EQ(room().text(), new_room()) << "undo reaches behind the run";
 }
 
+TEST_F(FurnishTest, a_room_that_was_changed_stays_so_beside_its_run) {
+  press(' ');
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  run_to(0.1);
+  const Viewer& viewer = shell_->session()->viewer();
+  press(render::key::f2);
+  press(render::key::f2);
+  EXPECT_EQ(viewer.note(), "");
+  press(render::key::f2);
+  place("desk", {0.6, -0.4});
+  const std::string text = room().text();
+  place("chair", {0.6, 0.6});
+  press('Z', true);
+  press(render::key::f2);
+  ASSERT_FALSE(shell_->furnishing());
+  EXPECT_EQ(shell_->session()->scene().text, new_room());
+  EXPECT_EQ(viewer.note(),
+            "the run of the room before it was changed; F2, then Space, runs the changed room");
+  press(render::key::f2);
+  EXPECT_EQ(room().text(), text);
+  EXPECT_TRUE(room().can_redo());
+  press(render::key::f2);
+  player().edit({Edit::Key::friction, 0, Vec3(0.45, 0, 0)});
+  press(render::key::f2);
+  EXPECT_TRUE(room().piece("desk"));
+  EXPECT_NE(room().text().find("friction = 0.45"), std::string::npos) << room().text();
+  press('Z', true);
+  EXPECT_EQ(room().text(), text);
+  press('Y', true);
+  press(' ');
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  EXPECT_EQ(shell_->session()->scene().setup.parameters.contact.friction, 0.45);
+  EXPECT_EQ(shell_->session()->scene().setup.model.furniture_total(), 2);
+  press(render::key::f2);
+  press(render::key::f2);
+  EXPECT_EQ(shell_->session()->viewer().note(), "");
+}
+
+TEST_F(FurnishTest, the_room_of_a_file_stays_changed_beside_its_run) {
+  shell_->open(write("own.toml", new_room()));
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  press(render::key::f2);
+  ASSERT_TRUE(view().change([](const io::Scene& s) { return with_piece(s, "desk", {{0.6, -0.4}, 0}); }));
+  const std::string text = room().text();
+  for (int i = 0; i < 2; ++i) press(render::key::f2);
+  EXPECT_EQ(room().text(), text);
+  press('Z', true);
+  for (int i = 0; i < 2; ++i) press(render::key::f2);
+  EXPECT_EQ(room().text(), new_room());
+  EXPECT_TRUE(room().can_redo());
+  shell_->furnish_new_room();
+  ASSERT_TRUE(view().change([](const io::Scene& s) { return with_piece(s, "chair", {{0.6, -0.4}, 0}); }));
+  for (int i = 0; i < 2; ++i) press(render::key::f2);
+  EXPECT_TRUE(room().piece("chair")) << "a new room beside a run stays, too";
+}
+
+TEST_F(FurnishTest, a_pale_run_tells_what_was_changed_on_its_way) {
+  press(' ');
+  ASSERT_TRUE(until([&] { return !shell_->furnishing() && ready(); }));
+  const auto words = [&] { return EarlierRun(shell_->session()->scene_ptr(), player()).in_words(); };
+  const std::string plain = "pale: the run before the room was changed";
+  run_to(0.1);
+  EXPECT_EQ(words(), plain);
+  player().edit({Edit::Key::friction, 0, Vec3(0.45, 0, 0)});
+  run_to(0.2);
+  EXPECT_TRUE(words().starts_with(plain + "; on its way it was given other values: contact.friction (0.1"))
+      << words();
+}
+
 TEST_F(FurnishTest, a_new_room_has_no_run_before_it) {
   const auto shake = [&] {
     press(' ');
