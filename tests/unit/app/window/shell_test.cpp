@@ -315,7 +315,7 @@ TEST_F(ShellTest, the_scene_is_saved_as_it_is_now_and_no_file_is_replaced_unaske
   EXPECT_EQ(saved.setup.parameters.contact.friction, 0.321);
   EXPECT_EQ(recent_files().front(), path);
   EXPECT_EQ(saved.title, "A rocking cabinet for tests");
-  run_to(0.15);
+  run_to(player().time() + 0.05);
   const Viewer& viewer = shell_->session()->viewer();
   EXPECT_EQ(viewer.title(), "A rocking cabinet for tests (changed), saved as kept");
   player().to_start();
