@@ -141,7 +141,7 @@ inline constexpr Phrase k_uplift{"first uplift, s", "最初の浮上り [s]"};
 inline constexpr Phrase k_impacts{"impacts", "衝突回数"};
 inline constexpr Phrase k_tilt{"peak tilt, °", "最大傾斜角 [°]"};
 inline constexpr Phrase k_critical{"critical angle, °", "転倒限界角 [°]"};
-inline constexpr Phrase k_slide{"base moved, mm", "台座の移動 [mm]"};
+inline constexpr Phrase k_slide{"base moved, mm", "底面中心の移動 [mm]"};
 inline constexpr Phrase k_stress{"peak stress, MPa", "最大応力 [MPa]"};
 inline constexpr Phrase k_table_note{
     "Overturns: the tilt passes the critical angle (centre of gravity, with what stands on the body, above "
@@ -160,7 +160,7 @@ inline constexpr Phrase k_table_note{
     "転倒：傾斜角が転倒限界角（載っている物を含めた重心が底面の縁の真上に来る角度）を超え、計算終了まで戻らな"
     "いこと。限界角は、それに最も"
     "近づいた時刻に傾いていた側の値（最大傾斜角の時刻とは異なることがある。傾斜角が{1}"
-    "°未満の場合は最も近い縁の値）。台座の移動："
+    "°未満の場合は最も近い縁の値）。底面中心の移動："
     "床または載っている家具に沿った底面中央の移動量の最大値（傾くと、傾斜によっても増える）。"
     "浮上り：底面の一辺が支える力が重量の{0} %を下回り、{1}°以上回転すること。衝突はその終わり。"
     "±は時間積分のみの推定誤差（第{2}節）。"};
