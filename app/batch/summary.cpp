@@ -358,13 +358,6 @@ ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcom
   return out;
 }
 
-ordered_json force_error(const ordered_json& summary, std::size_t anchor) {
-  const ordered_json estimate = summary.value("error_estimate", ordered_json());
-  if (!estimate.contains("anchors")) return nullptr;
-  const ordered_json& error = estimate["anchors"][anchor]["peak_force_N"];
-  return error == 0 ? ordered_json(nullptr) : error;
-}
-
 ordered_json failed_estimate(const Setup& setup, const std::string& message) {
   return {{"overturn_time_s", nullptr},
           {"peak_tilt_deg", nullptr},

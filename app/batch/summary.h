@@ -22,9 +22,6 @@ nlohmann::ordered_json summary(const io::Scene& scene, Run& run, const std::stri
 /// which `disagreements` then says in words.
 nlohmann::ordered_json error_estimate(const Setup& setup, const Outcome& run, const Outcome& finer);
 
-/// N, of the greatest force of an anchor; null: none is stated, or it never bore any.
-nlohmann::ordered_json force_error(const nlohmann::ordered_json& summary, std::size_t anchor);
-
 /// The same when the finer run failed.
 nlohmann::ordered_json failed_estimate(const Setup& setup, const std::string& message);
 

@@ -14,6 +14,7 @@
 #include "app/batch/load_steps.h"
 #include "app/batch/summary.h"
 #include "app/batch/ways_summary.h"
+#include "app/support/force_error.h"
 #include "app/support/integrators.h"
 #include "app/support/model_words.h"
 #include "app/support/models_in_brief.h"

@@ -84,8 +84,9 @@ inline constexpr Named k_all[] = {
     {"parameters", window_words::k_parameters},
     {"result", {"Who falls", "転倒する家具"}},
     {"map",
-     {"What overturns a rigid block of this shape, free on the floor",
-      "床に固定せずに置いた同じ形の剛体ブロックの転倒"}},
+     {"What overturns a rigid block of this shape, alone and free on the floor: no walls, fixings, other "
+      "pieces",
+      "床に単独で固定せずに置いた同じ形の剛体ブロックの転倒（壁・固定具・他の家具は考えない）"}},
     {"map_falls", {"overturns", "転倒"}},
     {"map_rocks", {"rocks, stays", "ロッキング、転倒せず"}},
     {"map_stands", {"stands", "浮き上がらず"}},

@@ -142,6 +142,14 @@ std::vector<LogCurve> curves_of(const LogChart& chart, const study::Criteria& cr
   return curves;
 }
 
+/// Names of the pieces that overturn in most runs of a cell, or in half of them.
+std::string fallen_in_words(const study::OverturnMap& map, const study::OverturnPoint& at) {
+  std::string names;
+  for (std::size_t b = 0; b < at.fell.size(); ++b)
+    if (2 * at.fell[b] >= at.runs) names += (names.empty() ? "" : say(k_comma)) + map.bodies[b];
+  return names;
+}
+
 /// The verdict; where neighbours disagree what runs within the cell say too: a probability if they differ.
 std::string outcome_in_words(const OverturnFound& found, int i, int j) {
   const study::OverturnPoint& at = point(found, i, j);
@@ -154,6 +162,7 @@ std::string outcome_in_words(const OverturnFound& found, int i, int j) {
                100 * within.high);
   }
   std::string verdict = say(words_of(at.verdict));
+  if (at.verdict == Verdict::some) verdict += say(k_colon) + fallen_in_words(found.map, at);
   if (const auto time = at.time(0.5)) verdict += say(k_map_first_at, *time);
   if (at.verdict == Verdict::failed) verdict += say(k_colon) + at.status;
   if (near_an_edge) verdict += say(share.overturned > 0 ? k_map_all_fall : k_map_all_stand, share.runs);

@@ -39,7 +39,6 @@ inline constexpr Phrase k_standing{"standing", "直立"};
 inline constexpr Phrase k_in_the_air{"in the air, tilt {0:.0f}°", "空中、傾斜 {0:.0f}°"};
 inline constexpr Phrase k_slid{", foot slid {0:.0f} mm", "、足元のすべり {0:.0f} mm"};
 inline constexpr Phrase k_title_saved{"{0}, saved as {1}", "{0}、{1} として保存済み"};
-inline constexpr Phrase k_title_changed{"{0} (changed)", "{0}（変更あり）"};
 inline constexpr Phrase k_slid_farthest{", {0}'s foot slid {1:.0f} mm",
                                         "、{0}の足元が最大 {1:.0f} mm すべった"};
 inline constexpr Phrase k_all_stand{"all {0} stand", "{0}体すべて直立"};

@@ -9,10 +9,10 @@
 #include <span>
 
 #include "app/picture/furnish_words.h"
-#include "app/picture/title_words.h"
 #include "app/picture/touching_bodies.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
+#include "app/support/titles.h"
 #include "solver/io/document/scene_document.h"
 #include "solver/math/ranges.h"
 #include "solver/model/accelerogram.h"
@@ -163,14 +163,6 @@ std::string when_in_words(const Shake& shake, double t) {
 
 }  // namespace
 
-std::string title_in(Language language, const std::string& title) {
-  const bool changed = title.ends_with(io::k_title_changed);
-  const std::string plain = title.substr(0, title.size() - (changed ? io::k_title_changed.size() : 0));
-  const auto* const known = ranges::find(title_words::k_titles, plain, &Phrase::english);
-  const std::string shown = known == std::end(title_words::k_titles) ? plain : say_in(language, *known);
-  return changed ? say_in(language, k_title_changed, shown) : shown;
-}
-
 std::string in_window_language(const std::string& title) {
   return title_in(window_language(), title);
 }
@@ -182,7 +174,8 @@ std::string title_in_words(const io::Scene& scene, const Parameters& parameters,
               return edited_value(parameters, key, index) != edited_value(scene.setup.parameters, key, index);
             });
   const std::string title = in_window_language(scene.title);
-  return changed && !scene.title.ends_with(io::k_title_changed) ? say(k_title_changed, title) : title;
+  return changed && !scene.title.ends_with(io::k_title_changed) ? say(title_words::k_title_changed, title)
+                                                                : title;
 }
 
 std::string body_in_words(const Model& model, const Vec3& gravity, const io::FrameRow& row,

@@ -4,16 +4,13 @@
 #include <string>
 #include <vector>
 
-#include "app/support/language.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/run/run.h"
 
 namespace topple::app {
 
-/// The title of a built-in scene, also of one whose values were set, in a language; other titles as they are.
-std::string title_in(Language language, const std::string& title);
-/// The same in the language of the window.
+/// title_in (titles.h) in the language of the window.
 std::string in_window_language(const std::string& title);
 
 /// The scene's title; with `parameters` that were changed since, or of a run that was `changed` on its way,

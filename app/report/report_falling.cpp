@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <numeric>
 
-#include "app/batch/summary.h"
 #include "app/report/report_parts.h"
 #include "app/support/base64.h"
+#include "app/support/force_error.h"
 #include "app/support/terms.h"
 #include "solver/run/overturn.h"
 

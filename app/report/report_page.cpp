@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/picture/words.h"
 #include "app/report/page_style.h"
 #include "app/report/report_parts.h"
 #include "app/support/terms.h"
+#include "app/support/titles.h"
 #include "solver/model/accelerogram.h"
 
 namespace topple::app {

@@ -187,7 +187,8 @@ inline constexpr Phrase k_pictures{
     "図{0}：主な時点の状態。床の格子は太線1 m、細線0.1 m。変形は実寸。"};
 inline constexpr Phrase k_at_start{"Start, {0} s", "開始 {0}秒"};
 inline constexpr Phrase k_at_fall{"{0} s: “{1}” is falling, tilt {2}°", "{0}秒：「{1}」が転倒中、傾斜角{2}°"};
-inline constexpr Phrase k_at_most{"{0} s: “{1}” tilts most, {2}°", "{0}秒：「{1}」の傾斜角が最大、{2}°"};
+inline constexpr Phrase k_at_most{"{0} s, about when it tilts most: “{1}”, {2}°",
+                                  "{0}秒：「{1}」の傾斜角が最大になる頃、{2}°"};
 inline constexpr Phrase k_at_end{"End, {0} s", "終了 {0}秒"};
 
 // ways out

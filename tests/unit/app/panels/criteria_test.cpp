@@ -155,6 +155,23 @@ TEST(MapWords, the_nearest_cell_is_not_called_the_present_shake) {
   EXPECT_TRUE(present_in_words(found, now).starts_with("The cell of the shake as it is now: "));
 }
 
+TEST(MapWords, a_cell_in_which_some_overturn_names_them) {
+  const auto scene = std::make_shared<const io::Scene>(io::load_scene("paper-a"));
+  OverturnFound found{"", std::make_shared<const study::OverturnPlan>(study::plan_overturn(*scene, "", ""))};
+  const study::Axis &x = found.plan->x, &y = found.plan->y;
+  found.map.bodies = {"free", "walled"};
+  found.map.points.resize(static_cast<std::size_t>(found.plan->points()));
+  study::OverturnPoint& cell = found.map.points[static_cast<std::size_t>(7 * x.count() + 5)];
+  cell.verdict = study::Verdict::some;
+  cell.runs = cell.overturned = 1;
+  cell.fell = {0, 1};
+  Parameters now = scene->setup.parameters;
+  now.shakes[0].frequency = x.in_si(5);
+  now.shakes[0].amplitude = y.in_si(7);
+  EXPECT_TRUE(present_in_words(found, now).ends_with(": some overturn: walled."))
+      << present_in_words(found, now);
+}
+
 TEST(MapWords, why_there_are_no_lines_is_said_in_both_languages) {
   using Sets = std::vector<std::string>;
   for (const auto& [name, sets] : {std::pair("paper-a", Sets{"contact.friction=0.1"}),

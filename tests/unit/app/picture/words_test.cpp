@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "app/picture/title_words.h"
+#include "app/support/title_words.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
 #include "solver/io/recording/observer.h"

@@ -5,6 +5,7 @@
 
 namespace topple::app::title_words {
 
+inline constexpr Phrase k_title_changed{"{0} (changed)", "{0}（変更あり）"};
 inline constexpr Phrase k_titles[] = {
     {"Sine of 0.5 Hz, 190 gal: two straps hold a cabinet to the wall (assumed sizes)",
      "正弦波 0.5 Hz、190 gal：2本のベルトで壁に固定したキャビネット（寸法は仮定）"},
