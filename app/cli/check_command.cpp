@@ -29,8 +29,11 @@ int check_command(const CheckOptions& options) {
         log_message("warning: " + scene + ": " + warning);
       fmt::print("{}: ok\n", scene);
       const Model& model = checked.scene->setup.model;
-      for (const Anchor& anchor : model.anchors)
-        if (!anchor.fixing.empty()) fmt::print("{}\n", fixing_line(describe_anchor(model, anchor)));
+      const std::vector<bool>& in_place = checked.scene->setup.parameters.anchors;
+      for (std::size_t k = 0; k < model.anchors.size(); ++k)
+        if (const Anchor& anchor = model.anchors[k]; !anchor.fixing.empty())
+          fmt::print("{}{}\n", fixing_line(describe_anchor(model, anchor)),
+                     k < in_place.size() && !in_place[k] ? ", not in place" : "");
       for (const Wedge& wedge : checked.scene->setup.wedges)
         fmt::print("{}\n", wedge_line(describe_wedge(model, wedge)));
     } catch (const io::InputError& error) {

@@ -357,12 +357,14 @@ inline constexpr Phrase k_error_text{
     "the error of a method of first order, to which contacts that open and close bring any. It is an "
     "estimate of the time "
     "stepping alone, not of the model. None is stated for the stress of what fell and the forces on it, nor "
-    "for the stress of a frame that lands in long fixed steps: a blow follows no order.",
+    "for the stress of a frame that lands in long fixed steps: a blow follows no order; nor for forces on a "
+    "rigid body: that it does not bend decides more.",
     "計算を{0}で繰り返した。第{1}節と固定具の最大力の±は両者の差の{2}倍である（"
     "接触の開閉があると、どの解法も1次精度となるため）。"
     "これは時間積分の誤差の推定であり、モデル化の誤差を含まない。"
     "転倒した家具の応力とその固定具の力、長い固定刻みのまま着地した骨組の応力の誤差は示さない"
-    "（衝突時の誤差には次数がないため）。"};
+    "（衝突時の誤差には次数がないため）。剛体の固定具の力の誤差も示さない（曲がらないことの影響の方が大きいた"
+    "め）。"};
 inline constexpr Phrase k_error_open{"The two runs part, so no number can be given for it: {0}.",
                                      "両者の経過が異なるため、誤差を数値で示すことはできない：{0}。"};
 inline constexpr Phrase k_open_falls{"“{0}” overturns at {1} s, but stays standing in the finer run",

@@ -110,10 +110,11 @@ std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outc
 std::vector<std::optional<double>> anchor_errors(const Setup& setup, const Outcome& run,
                                                  const Outcome& finer) {
   const std::vector<BodyError> bodies = errors(setup, run, finer);
-  const auto stands = [&](int body) {  // so do floors and walls of beams
+  const auto bends_and_stands = [&](int body) {  // so do floors and walls of beams
     if (body < 0 || body >= static_cast<int>(bodies.size())) return true;
     const BodyError& e = bodies[static_cast<std::size_t>(body)];
-    return !e.overturned && !e.overturned_refined;
+    return !e.overturned && !e.overturned_refined &&
+           !run.bodies()[static_cast<std::size_t>(body)].always_rigid;
   };
   const auto held = [](const AnchorOutcome& o) { return o.hold == AnchorHold::in_place || o.peak_force > 0; };
   std::vector<std::optional<double>> list;
@@ -121,7 +122,7 @@ std::vector<std::optional<double>> anchor_errors(const Setup& setup, const Outco
     const Anchor& anchor = setup.model.anchors[k];
     const AnchorOutcome &coarse = run.anchors()[k], &fine = finer.anchors()[k];
     const bool known = held(coarse) && held(fine) && coarse.broke.has_value() == fine.broke.has_value() &&
-                       stands(anchor.body) && stands(anchor.other.body);
+                       bends_and_stands(anchor.body) && bends_and_stands(anchor.other.body);
     list.push_back(known ? std::optional(error(coarse.peak_force, fine.peak_force,
                                                k_least_force_error * coarse.peak_force))
                          : std::nullopt);

@@ -76,8 +76,9 @@ struct BodyError {
 /// One of each body of `run` that is furniture. Both are outcomes of `setup`, but for their steps.
 std::vector<BodyError> errors(const Setup& setup, const Outcome& run, const Outcome& finer);
 
-/// N, stated errors of the greatest forces of the anchors. Absent: it was never in place, broke in one of the
-/// runs alone, or a body that it is attached to overturned, whose landing follows no order.
+/// N, stated errors of the greatest forces of the anchors. Absent: it was never in place, or broke in one of
+/// the runs alone, or a body that it is attached to overturned, whose landing follows no order, or did not
+/// bend as it was computed, which decides more than the steps do.
 std::vector<std::optional<double>> anchor_errors(const Setup& setup, const Outcome& run,
                                                  const Outcome& finer);
 

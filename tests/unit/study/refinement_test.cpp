@@ -142,6 +142,9 @@ TEST(Refinement, the_stated_error_holds_the_true_one_of_what_anchors_bear) {
   const auto of_one = anchor_errors(one, outcome(one), outcome(one));
   EXPECT_FALSE(of_one[0]);
   EXPECT_TRUE(of_one[1]);
+  const topple::Setup rigid =
+      io::load_scene("anchored", {"run.duration=3", "cabinet.free.model=rigid"}).setup;
+  EXPECT_FALSE(anchor_errors(rigid, outcome(rigid), outcome(compared(rigid)))[0]);
 }
 
 TEST(Refinement, what_stands_on_one_course_of_many_is_seen) {

@@ -252,6 +252,19 @@ TEST_F(BadSceneTest, soft_contacts_are_said_to_tip_as_early_as_they_do) {
   }
 }
 
+TEST_F(BadSceneTest, check_tells_which_fixings_are_not_in_place) {
+  const auto away = [&](const std::vector<std::string>& words) {
+    const std::string out = topple(words).out;
+    int lines = 0;
+    for (std::size_t at = out.find(", not in place\n"); at != std::string::npos;
+         at = out.find(", not in place\n", at + 1))
+      ++lines;
+    return lines;
+  };
+  EXPECT_EQ(away({"check", "sixth-floor"}), 0);
+  EXPECT_EQ(away({"check", "sixth-floor", "--set", "fixing.1.on=false"}), 2);  // two brackets
+}
+
 TEST_F(BadSceneTest, the_built_in_scenes_are_good_and_listed) {
   const Ended list = topple({"scenes"});
   EXPECT_EQ(list.code, 0);

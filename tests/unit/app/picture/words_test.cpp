@@ -6,9 +6,9 @@
 
 #include <set>
 
-#include "app/support/title_words.h"
 #include "app/picture/window_words.h"
 #include "app/support/terms.h"
+#include "app/support/title_words.h"
 #include "solver/io/recording/observer.h"
 #include "solver/io/scene/scene.h"
 #include "solver/io/scene/scene_file.h"
