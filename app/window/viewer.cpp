@@ -31,8 +31,7 @@ constexpr float k_most_side = 0.45f;     // of the width
 constexpr float k_path_lines = 22;       // lines of text, the load path
 constexpr float k_most_path = 0.5f;      // of the height of the side panel
 constexpr int k_keeping_steps = 20;      // of a camera that keeps bodies in the picture
-constexpr float k_status_lines = 2;
-constexpr float k_least_letters = 12;  // px
+constexpr float k_least_letters = 12;    // px
 
 /// Where there is a keyboard: off screen there is none. What lies over the panels has its own keys.
 void set_keyboard_navigation(bool on) {
@@ -49,10 +48,6 @@ bool same_instant(const std::optional<io::FrameRow>& a, const std::optional<io::
   // an edit of what does not go on puts anchors in place and takes them away
   return a->time == b->time && a->step == b->step && a->branch == b->branch && a->anchor == b->anchor;
 }
-
-}  // namespace
-
-namespace {
 
 /// What was changed after the start, as "shake.1.amplitude (3.60 s)".
 std::string changes_on_the_way(const Player& player) {
@@ -216,8 +211,8 @@ void Viewer::lay_out() {
   }
   const float line = fonts_.small->FontSize;
   const float side = std::min(k_side_panel * scale_, k_most_side * size.x);
-  const float status =
-      k_status_lines * ImGui::GetTextLineHeightWithSpacing() + 2 * ImGui::GetStyle().WindowPadding.y;
+  const float status = static_cast<float>(k_status_lines) * ImGui::GetTextLineHeightWithSpacing() +
+                       2 * ImGui::GetStyle().WindowPadding.y;
   const float bar = transport_height_ > 0 ? transport_height_ : 38 * scale_;
   const float timeline =
       std::min({182 * scale_, 0.3f * size.y, 0.45f * std::max(size.y - status - bar, 0.f)});

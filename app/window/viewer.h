@@ -226,6 +226,7 @@ class Viewer {
   bool drawn_still_ = false;  // the scene kept is one of best quality
   double quiet_ = 0;          // s since the scene last changed
   bool dragging_ = false, dragged_ = false;
+  static constexpr int k_status_lines = 2;
   float transport_height_ = 0;              // as last drawn
   std::string status_line_, status_words_;  // as far as there is room, and whole
   bool to_next_panel_ = false;

@@ -25,7 +25,6 @@ namespace {
 
 using namespace window_words;
 
-constexpr int k_most_status_lines = 2;
 constexpr float k_status_tip = 50;       // ems, the width of the whole status
 constexpr float k_most_legend = 0.3f;    // of the width
 constexpr float k_room_for_title = 16;   // lines
@@ -256,7 +255,7 @@ void Viewer::write_status() {
   float room = ImGui::GetIO().DisplaySize.x - 2 * ImGui::GetStyle().WindowPadding.x - width(pace());
   if (player_.can_halve_step()) room -= width(say(k_halve)) + 2 * ImGui::GetStyle().FramePadding.x;
   status_line_.clear();
-  for (const std::string& line : render::wrapped(*fonts_.small, words, room, k_most_status_lines))
+  for (const std::string& line : render::wrapped(*fonts_.small, words, room, k_status_lines))
     status_line_ += (status_line_.empty() ? "" : "\n") + line;
   status_words_ = words;
 }

@@ -29,6 +29,7 @@ inline constexpr double k_least_slide_error = 1e-4;   ///< m
 inline constexpr double k_least_stress_error = 5e-4;  ///< of the stress
 inline constexpr double k_least_force_error = 5e-4;   ///< of the force
 
+/// Fixed steps in a bounce from which on they resolve the blows of a frame.
 inline constexpr double k_steps_of_bounce = 20;
 
 /// The same run at half the step and a tenth of the tolerance; implicit substeps of rigid bodies follow the

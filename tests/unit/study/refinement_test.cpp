@@ -164,7 +164,8 @@ TEST(Refinement, no_error_is_stated_of_the_stress_of_a_landing) {
   EXPECT_TRUE(stated[0].overturn_error && !stated[0].peak_stress_error);
 }
 
-// 15.2 MPa at 1 ms, 15.4 at half of that, 18.8 at 1/32 of it; the one before the wall 147, 149 and 161 MPa.
+// 15.2 MPa at 1 ms, 15.4 at half of that, 18.8 at 1/32 of it; the one before the wall 147, 149 and, at 1/16,
+// 161.
 TEST(Refinement, no_error_is_stated_of_the_stress_of_a_frame_whose_landings_the_step_blurs) {
   const auto stated = [](const char* name, const char* alpha, const char* step, std::size_t body) {
     const topple::Setup setup = io::load_scene(name, {alpha, step, "run.duration=2 s"}).setup;
